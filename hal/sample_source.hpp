@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hal/accounting.hpp"
+#include "hal/result.hpp"
+#include "hal/sample_block.hpp"
+
+namespace compueye::hal {
+
+/// What a source is, known before it is started.
+struct SourceDescription {
+  std::string backend;   ///< "sim", "usb", "hid", "spi", "replay"
+  std::string serial;    ///< unique among devices of one backend
+  std::string firmware;  ///< the device's own version string
+  int channels = 0;      ///< M
+  int bits = 0;          ///< depth of the codes
+  double frame_rate_hz = 0.0;
+  std::vector<std::int32_t> ommatidium_of_channel;  ///< M entries: channel -> ommatidium (row of A)
+  std::vector<std::int32_t> sample_offset_ns;       ///< M entries: when a channel is sampled after the frame's t_ns
+};
+
+/// A stream of frames of samples: an eye on a bus, a simulated eye or a recording.
+///
+/// One thread calls read(); stop() may come from another thread only between reads. After start(), read() neither
+/// allocates nor throws. Every back end passes tests/hal/sample_source_contract.hpp.
+class SampleSource {
+ public:
+  SampleSource() = default;
+  SampleSource(const SampleSource&) = delete;
+  SampleSource& operator=(const SampleSource&) = delete;
+  virtual ~SampleSource() = default;
+
+  [[nodiscard]] const SourceDescription& describe() const noexcept { return do_describe(); }
+
+  /// Begins a new stream: frame numbers and accounting restart at 0. Starting twice without stop() is a usage error.
+  [[nodiscard]] Result<void> start();
+
+  /// The next frame, waiting until `deadline_ns` (of the Clock the source was made with) at most.
+  /// Errors: timeout (try again), end_of_stream, disconnected, usage (not started). Never a stale frame: frames lost
+  /// before the one returned are in account().dropped, and its `frame` number has jumped by as many.
+  [[nodiscard]] Result<SampleBlock> read(std::int64_t deadline_ns);
+
+  /// Ends the stream; idempotent. A later start() begins anew.
+  void stop() noexcept;
+
+  [[nodiscard]] bool started() const noexcept { return started_; }
+
+  /// Since the last start(): produced by the device = delivered by read() + dropped by reason.
+  [[nodiscard]] FrameAccount account() const noexcept { return do_account(); }
+
+ private:
+  virtual const SourceDescription& do_describe() const noexcept = 0;
+  virtual Result<void> do_start() = 0;
+  virtual Result<SampleBlock> do_read(std::int64_t deadline_ns) = 0;
+  virtual void do_stop() noexcept = 0;
+  virtual FrameAccount do_account() const noexcept = 0;
+
+  bool started_ = false;
+};
+
+}  // namespace compueye::hal

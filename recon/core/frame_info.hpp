@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+namespace compueye::recon {
+
+enum class OperatorKind : std::uint8_t { dense, csr };
+enum class BasisKind : std::uint8_t { identity, dct };
+enum class SolverKind : std::uint8_t { admm, tikhonov };
+enum class Precision : std::uint8_t { f32, f64 };
+
+/// One way of turning y into x, with a known cost.
+struct OperatingPoint {
+  OperatorKind op = OperatorKind::csr;
+  BasisKind basis = BasisKind::identity;
+  SolverKind solver = SolverKind::admm;
+  Precision precision = Precision::f32;
+  int iterations = 0;
+};
+
+enum class Health : std::uint8_t {
+  converged,    ///< the optimality residuals fell below 1e-3 (relative) within the budget
+  budget_used,  ///< exactly K iterations done, residuals above that: normal in real time
+  invalid,      ///< NaN or infinity in y or in the result, or more reweighted channels than planned: x is all zero
+};
+
+/// What a solver says about one frame. Not an error type: using up the budget is normal.
+struct FrameInfo {
+  OperatingPoint point;
+  Health health = Health::invalid;
+  int iterations = 0;
+  int channels_used = 0;         ///< seeing rows with a weight above zero
+  int channels_reweighted = 0;   ///< seeing rows with a weight other than one in this frame
+  double objective = 0.0;        ///< 1/2 ||W^(1/2)(Ax-y)||^2 + lambda ||Psi x||_1 (tikhonov: + lambda/2 ||x||^2)
+  double residual = 0.0;         ///< ||W^(1/2)(Ax-y)||, in units of y
+  double primal_residual = 0.0;  ///< relative, 0 for direct solvers
+  double dual_residual = 0.0;    ///< relative, 0 for direct solvers
+};
+
+}  // namespace compueye::recon

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "hal/result.hpp"
+#include "recon/core/frame_info.hpp"
+#include "recon/response.hpp"
+
+namespace compueye::recon {
+
+enum class ConstraintKind : std::uint8_t { none, nonnegative, box };
+
+/// min over x of 1/2 ||W^(1/2)(Ax-y)||^2 + lambda ||Psi x||_1 subject to the constraint (tikhonov: + lambda/2 ||x||^2
+/// instead of the l1 term). Intensities are in units of display white.
+struct Objective {
+  BasisKind basis = BasisKind::identity;  ///< Psi; dct = orthonormal 2-D DCT-II
+  ConstraintKind constraint = ConstraintKind::none;
+  double lo = 0.0;  ///< box only; lo < hi
+  double hi = 1.0;
+  double lambda = 0.0;  ///< >= 0
+};
+
+/// How it is solved, decided before the first frame.
+struct Plan {
+  SolverKind solver = SolverKind::admm;
+  Precision precision = Precision::f32;
+  int iterations = 100;       ///< exactly this many per frame, 1 .. 1e6
+  double rho = 0.0;           ///< ADMM penalty; 0 = by rule from lambda and signal_scale
+  double relaxation = 1.7;    ///< 0 < relaxation < 2
+  double signal_scale = 1.0;  ///< expected size of x, for the rule of rho: 1 when x is 0..1 of white
+  int max_reweighted = -1;    ///< channels that may have a weight other than one in a frame; -1 = a tenth of M
+};
+
+/// The inverse that makes a frame cheap: (A_s A_s' + rho I)^-1 of the seeing rows, made in double, kept in float32,
+/// packed upper triangle by rows. Worth storing: see firmware/files/factor_cache.hpp.
+struct Factor {
+  double rho = 0.0;
+  int order = 0;               ///< number of seeing rows
+  std::vector<float> inverse;  ///< order*(order+1)/2 values
+};
+
+/// `done` of `total` units of set-up work; return false to give up (error: interrupted).
+using Progress = std::function<bool(std::string_view what, double done, double total)>;
+
+/// A problem that is set up: operator tables, basis tables and factor. Immutable after create(); solve() may run from
+/// several threads at once, each with its own workspace, and neither allocates, locks nor throws.
+class Reconstructor {
+ public:
+  /// `image_rows * image_cols` must be the response's number of columns. `factor` may hand in a stored one: it is
+  /// refused (error stale) when its rho or order does not fit. Errors: usage, mismatch, out_of_range, interrupted.
+  [[nodiscard]] static hal::Result<Reconstructor> create(const Response& response, int image_rows, int image_cols,
+                                                         const Objective& objective, const Plan& plan,
+                                                         std::optional<Factor> factor = std::nullopt,
+                                                         const Progress& progress = {});
+
+  Reconstructor(Reconstructor&&) noexcept;
+  Reconstructor& operator=(Reconstructor&&) noexcept;
+  ~Reconstructor();
+
+  [[nodiscard]] int channels() const noexcept;  ///< M, blind rows included
+  [[nodiscard]] int image_rows() const noexcept;
+  [[nodiscard]] int image_cols() const noexcept;
+  [[nodiscard]] int pixels() const noexcept;  ///< N
+  [[nodiscard]] int seeing_channels() const noexcept;
+  [[nodiscard]] const Objective& objective() const noexcept;
+  [[nodiscard]] const Plan& plan() const noexcept;  ///< with every rule resolved (rho, max_reweighted)
+  [[nodiscard]] OperatingPoint operating_point() const noexcept;
+
+  /// Exact size of the workspace that solve() wants, for 64-byte aligned memory.
+  [[nodiscard]] std::size_t required_bytes() const noexcept;
+  /// Bytes of the tables behind it: operator, basis and factor.
+  [[nodiscard]] std::size_t table_bytes() const noexcept;
+
+  /// One frame: y and weights have M entries (weights empty: all one; each 0..1, 0 = channel missing, its y may then
+  /// be anything), x has N. `workspace` is at least required_bytes() and 64-byte aligned. Same input, same bits.
+  /// FrameInfo::health is invalid, and x zero, for non-finite y or more reweighted channels than planned.
+  FrameInfo solve(std::span<const float> y, std::span<const float> weights, std::span<std::byte> workspace,
+                  std::span<float> x) const noexcept;
+
+  /// The factor, to be stored; empty inverse where the plan needs none.
+  [[nodiscard]] const Factor& factor() const noexcept;
+
+ private:
+  struct Tables;
+  explicit Reconstructor(std::unique_ptr<Tables> tables) noexcept;
+  std::unique_ptr<Tables> tables_;
+};
+
+}  // namespace compueye::recon

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hal/result.hpp"
+
+namespace compueye::recon {
+
+/// The measurement matrix A (M x N) of an eye: row m holds what every pixel gives to ommatidium m, in the unit "one
+/// fully seen pixel at white". A value type: nominal, measured, fitted or somebody else's, they are all one of these.
+/// Held in double for set-up, calibration and references; operators for the frame path are made from it in float32.
+class Response {
+ public:
+  /// `values` row-major, rows * cols of them. Errors: out_of_range (empty, or a NaN or infinity, named by row and
+  /// column), mismatch (size).
+  [[nodiscard]] static hal::Result<Response> from_dense(int rows, int cols, std::vector<double> values);
+
+  /// Compressed sparse rows: row m has entries row_start[m] .. row_start[m+1]-1, columns strictly ascending.
+  [[nodiscard]] static hal::Result<Response> from_csr(int rows, int cols, std::vector<std::int64_t> row_start,
+                                                      std::vector<std::int32_t> columns, std::vector<double> values);
+
+  [[nodiscard]] int rows() const noexcept { return rows_; }  ///< M
+  [[nodiscard]] int cols() const noexcept { return cols_; }  ///< N
+  [[nodiscard]] bool is_dense() const noexcept { return row_start_.empty(); }
+  /// Stored entries: rows*cols when dense.
+  [[nodiscard]] std::int64_t stored_entries() const noexcept { return static_cast<std::int64_t>(values_.size()); }
+  /// Entries with a magnitude above `above`.
+  [[nodiscard]] std::int64_t nonzeros(double above = 0.0) const noexcept;
+
+  /// Row-major values of a dense response; the stored values, row after row, of a sparse one.
+  [[nodiscard]] std::span<const double> values() const noexcept { return values_; }
+  [[nodiscard]] std::span<const std::int64_t> row_start() const noexcept {
+    return row_start_;
+  }                                                                                          ///< M+1; empty if dense
+  [[nodiscard]] std::span<const std::int32_t> columns() const noexcept { return columns_; }  ///< empty if dense
+
+  /// Calls visit(column, value) for every stored entry of row m, columns ascending.
+  template <class Visitor>
+  void for_each_in_row(int m, Visitor&& visit) const {
+    const auto row = static_cast<std::size_t>(m);
+    const auto width = static_cast<std::size_t>(cols_);
+    const std::size_t begin = is_dense() ? row * width : static_cast<std::size_t>(row_start_[row]);
+    const std::size_t end = is_dense() ? begin + width : static_cast<std::size_t>(row_start_[row + 1]);
+    for (std::size_t e = begin; e < end; ++e) {
+      visit(is_dense() ? static_cast<std::int32_t>(e - begin) : columns_[e], values_[e]);
+    }
+  }
+
+  /// y = A x and x = A' y in double; y has M, x has N entries.
+  void forward(std::span<const double> x, std::span<double> y) const;
+  void adjoint(std::span<const double> y, std::span<double> x) const;
+
+  /// Sum of each row: what an ommatidium reads from an all-white scene.
+  [[nodiscard]] std::vector<double> row_sums() const;
+
+  /// Rows that see something. Blind rows carry no information about x and are dropped by every solver.
+  [[nodiscard]] std::vector<std::int32_t> seeing_rows() const;
+
+  /// The given rows, each multiplied by its factor (`scale` empty: by 1). Rows may not repeat.
+  [[nodiscard]] Response select_rows(std::span<const std::int32_t> rows, std::span<const double> scale = {}) const;
+
+  /// 64-bit content hash over shape and every stored entry; keys everything that was computed from this A.
+  [[nodiscard]] std::uint64_t content_hash() const;
+
+ private:
+  Response() = default;
+  int rows_ = 0;
+  int cols_ = 0;
+  std::vector<std::int64_t> row_start_;
+  std::vector<std::int32_t> columns_;
+  std::vector<double> values_;
+};
+
+}  // namespace compueye::recon
