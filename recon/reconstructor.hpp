@@ -2,15 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string_view>
-#include <vector>
 
 #include "hal/result.hpp"
 #include "recon/core/frame_info.hpp"
+#include "recon/factor.hpp"
 #include "recon/response.hpp"
 
 namespace compueye::recon {
@@ -37,17 +35,6 @@ struct Plan {
   double signal_scale = 1.0;  ///< expected size of x, for the rule of rho: 1 when x is 0..1 of white
   int max_reweighted = -1;    ///< channels that may have a weight other than one in a frame; -1 = a tenth of M
 };
-
-/// The inverse that makes a frame cheap: (A_s A_s' + rho I)^-1 of the seeing rows, made in double, kept in float32,
-/// packed upper triangle by rows. Worth storing: see firmware/files/factor_cache.hpp.
-struct Factor {
-  double rho = 0.0;
-  int order = 0;               ///< number of seeing rows
-  std::vector<float> inverse;  ///< order*(order+1)/2 values
-};
-
-/// `done` of `total` units of set-up work; return false to give up (error: interrupted).
-using Progress = std::function<bool(std::string_view what, double done, double total)>;
 
 /// A problem that is set up: operator tables, basis tables and factor. Immutable after create(); solve() may run from
 /// several threads at once, each with its own workspace, and neither allocates, locks nor throws.

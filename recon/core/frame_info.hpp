@@ -24,7 +24,8 @@ enum class Health : std::uint8_t {
   invalid,      ///< NaN or infinity in y or in the result, or more reweighted channels than planned: x is all zero
 };
 
-/// What a solver says about one frame. Not an error type: using up the budget is normal.
+/// What a solver says about one frame. Not an error type: using up the budget is normal. Sums run over seeing channels;
+/// what blind ones read is a constant that no x changes.
 struct FrameInfo {
   OperatingPoint point;
   Health health = Health::invalid;

@@ -1,0 +1,180 @@
+#include "recon/core/admm.hpp"
+
+#include "recon/core/frame_outcome.hpp"
+#include "recon/core/proximal.hpp"
+#include "recon/core/square_root.hpp"
+#include "recon/core/vector_sums.hpp"
+
+namespace compueye::recon::core {
+namespace {
+
+/// Residuals below this share of the variables' size count as converged.
+constexpr double converged_below = 1e-3;
+
+/// Squared distances after an iteration: how far the copies are from x, and how far they moved.
+struct Gap {
+  double apart = 0.0, moved = 0.0, size = 0.0;
+};
+
+/// A copy z of x, or of Psi x, with its scaled dual u and its proximal map.
+template <class T>
+struct Copy {
+  T* z = nullptr;
+  T* u = nullptr;
+  T threshold = T(0);
+  T lo = T(0);
+  T hi = T(0);
+
+  void place(std::size_t n, Workspace& memory) noexcept {
+    z = memory.take<T>(n);
+    u = memory.take<T>(n);
+  }
+
+  void update(const T* x, std::size_t n, T relaxation) noexcept {
+    relaxed_prox_step(x, z, u, n, relaxation, threshold, lo, hi);
+  }
+
+  void update_and_measure(const T* x, T* before, std::size_t n, T relaxation, Gap& gap) noexcept {
+    for (std::size_t k = 0; k < n; ++k) before[k] = z[k];
+    update(x, n, relaxation);
+    gap.apart += static_cast<double>(squared_distance(x, z, n));
+    gap.moved += static_cast<double>(squared_distance(z, before, n));
+    gap.size += static_cast<double>(dot(z, z, n)) + static_cast<double>(dot(u, u, n));
+  }
+};
+
+template <class T>
+class Admm {
+ public:
+  Admm(const FrameProblem<T>& problem, Workspace& memory) noexcept
+      : problem_(problem),
+        n_(problem.pixels()),
+        step_(problem, memory),
+        x_(memory.take<T>(n_)),
+        before_(memory.take<T>(n_)),
+        sparse_basis_(problem.point.basis != BasisKind::identity),
+        pixel_copy_(!sparse_basis_ || problem.constrained) {
+    if (sparse_basis_) {
+      coefficients_ = memory.take<T>(n_);
+      scratch_ = memory.take<T>(dct_scratch_size(problem.image_rows, problem.image_cols));
+      in_basis_.place(n_, memory);
+    }
+    if (pixel_copy_) in_pixels_.place(n_, memory);
+    set_proximal_maps();
+  }
+
+  FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
+    FrameInfo info = begin_outcome(problem_);
+    const bool usable = step_.begin(y, weights);
+    if (!usable) {
+      deliver(x_, false, n_, info, x);
+      return info;
+    }
+    clear();
+    Gap gap;
+    for (int k = 1; k <= problem_.point.iterations; ++k) iterate(k == problem_.point.iterations ? &gap : nullptr);
+    finish(gap, info);
+    deliver(x_, finite_, n_, info, x);
+    return info;
+  }
+
+ private:
+  void set_proximal_maps() noexcept {
+    constexpr T unbounded = T(1e30);
+    const T penalty = sparse_basis_ && pixel_copy_ ? problem_.rho * T(0.5) : problem_.rho;
+    in_basis_.threshold = problem_.lambda / penalty;
+    in_basis_.lo = -unbounded;
+    in_basis_.hi = unbounded;
+    in_pixels_.threshold = sparse_basis_ ? T(0) : in_basis_.threshold;
+    in_pixels_.lo = problem_.constrained && problem_.lo > -unbounded ? problem_.lo : -unbounded;
+    in_pixels_.hi = problem_.constrained && problem_.hi < unbounded ? problem_.hi : unbounded;
+  }
+
+  void clear() noexcept {
+    for (std::size_t k = 0; k < n_; ++k) {
+      if (sparse_basis_) in_basis_.z[k] = in_basis_.u[k] = T(0);
+      if (pixel_copy_) in_pixels_.z[k] = in_pixels_.u[k] = T(0);
+    }
+  }
+
+  void iterate(Gap* gap) noexcept {
+    if (sparse_basis_) {
+      subtract(in_basis_.z, in_basis_.u, coefficients_, n_);
+      dct_inverse(problem_.psi, coefficients_, x_, scratch_);
+      if (pixel_copy_) blend_difference(in_pixels_.z, in_pixels_.u, T(0.5), x_, n_);
+    } else {
+      subtract(in_pixels_.z, in_pixels_.u, x_, n_);
+    }
+    step_.apply(x_);
+    if (sparse_basis_) {
+      dct_forward(problem_.psi, x_, coefficients_, scratch_);
+      move(in_basis_, coefficients_, gap);
+    }
+    if (pixel_copy_) move(in_pixels_, x_, gap);
+  }
+
+  void move(Copy<T>& copy, const T* x, Gap* gap) noexcept {
+    if (gap == nullptr) {
+      copy.update(x, n_, problem_.relaxation);
+    } else {
+      copy.update_and_measure(x, before_, n_, problem_.relaxation, *gap);
+    }
+  }
+
+  /// The copy that is feasible (pixels) or sparse (coefficients) is the answer, not the average they are drawn to.
+  void finish(const Gap& gap, FrameInfo& info) noexcept {
+    finite_ = all_finite(x_, n_);  // a clip would turn NaN into a number
+    if (pixel_copy_) {
+      for (std::size_t k = 0; k < n_; ++k) x_[k] = in_pixels_.z[k];
+      if (sparse_basis_) dct_forward(problem_.psi, x_, coefficients_, scratch_);
+    } else {
+      dct_inverse(problem_.psi, in_basis_.z, x_, scratch_);
+      for (std::size_t k = 0; k < n_; ++k) coefficients_[k] = in_basis_.z[k];
+    }
+    const T* penalised = sparse_basis_ ? coefficients_ : x_;
+    const double penalty = static_cast<double>(problem_.lambda) * static_cast<double>(sum_of_magnitudes(penalised, n_));
+    evaluate(step_, x_, penalty, info);
+    const double size = gap.size > 0.0 ? gap.size : 1.0;
+    info.primal_residual = square_root(gap.apart / size);
+    info.dual_residual = square_root(gap.moved / size);
+    info.iterations = problem_.point.iterations;
+    const bool settled = info.primal_residual < converged_below && info.dual_residual < converged_below;
+    info.health = settled ? Health::converged : Health::budget_used;
+  }
+
+  const FrameProblem<T>& problem_;
+  std::size_t n_;
+  WeightedStep<T> step_;
+  T* x_;
+  T* before_;
+  bool sparse_basis_;
+  bool pixel_copy_;
+  T* coefficients_ = nullptr;
+  T* scratch_ = nullptr;
+  Copy<T> in_basis_;
+  Copy<T> in_pixels_;
+  bool finite_ = true;
+};
+
+}  // namespace
+
+template <class T>
+FrameInfo solve_admm(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
+                     float* x) noexcept {
+  Workspace memory(workspace);
+  return Admm<T>(problem, memory).solve(y, weights, x);
+}
+
+template <class T>
+std::size_t admm_bytes(const FrameProblem<T>& problem) noexcept {
+  Workspace counter;
+  const Admm<T> admm(problem, counter);
+  return counter.used();
+}
+
+template FrameInfo solve_admm(const FrameProblem<float>&, const float*, const float*, std::byte*, float*) noexcept;
+template FrameInfo solve_admm(const FrameProblem<double>&, const float*, const float*, std::byte*, float*) noexcept;
+template std::size_t admm_bytes(const FrameProblem<float>&) noexcept;
+template std::size_t admm_bytes(const FrameProblem<double>&) noexcept;
+
+}  // namespace compueye::recon::core

@@ -1,0 +1,38 @@
+#include "recon/core/frame_outcome.hpp"
+
+#include "recon/core/square_root.hpp"
+#include "recon/core/vector_sums.hpp"
+
+namespace compueye::recon::core {
+
+template <class T>
+FrameInfo begin_outcome(const FrameProblem<T>& problem) noexcept {
+  FrameInfo info;
+  info.point = problem.point;
+  return info;
+}
+
+template <class T>
+void deliver(const T* solution, bool usable, std::size_t n, FrameInfo& info, float* x) noexcept {
+  const bool good = usable && all_finite(solution, n);
+  for (std::size_t k = 0; k < n; ++k) x[k] = good ? static_cast<float>(solution[k]) : 0.0F;
+  if (!good) info.health = Health::invalid;
+}
+
+template <class T>
+void evaluate(WeightedStep<T>& step, const T* solution, double penalty, FrameInfo& info) noexcept {
+  const double squared = step.squared_residual(solution);
+  info.residual = square_root(squared);
+  info.objective = 0.5 * squared + penalty;
+  info.channels_used = static_cast<int>(step.channels_used());
+  info.channels_reweighted = static_cast<int>(step.channels_reweighted());
+}
+
+template FrameInfo begin_outcome(const FrameProblem<float>&) noexcept;
+template FrameInfo begin_outcome(const FrameProblem<double>&) noexcept;
+template void deliver(const float*, bool, std::size_t, FrameInfo&, float*) noexcept;
+template void deliver(const double*, bool, std::size_t, FrameInfo&, float*) noexcept;
+template void evaluate(WeightedStep<float>&, const float*, double, FrameInfo&) noexcept;
+template void evaluate(WeightedStep<double>&, const double*, double, FrameInfo&) noexcept;
+
+}  // namespace compueye::recon::core

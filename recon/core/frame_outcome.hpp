@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+
+#include "recon/core/frame_problem.hpp"
+#include "recon/core/weighted_step.hpp"
+
+namespace compueye::recon::core {
+
+/// What is known of a frame before it is solved: the operating point, nothing done yet.
+template <class T>
+[[nodiscard]] FrameInfo begin_outcome(const FrameProblem<T>& problem) noexcept;
+
+/// Hands out x, or all zeros with Health::invalid when the solution is not finite or `usable` is false.
+template <class T>
+void deliver(const T* solution, bool usable, std::size_t n, FrameInfo& info, float* x) noexcept;
+
+/// Fills in the residual, the channel counts and the objective with the given penalty term.
+template <class T>
+void evaluate(WeightedStep<T>& step, const T* solution, double penalty, FrameInfo& info) noexcept;
+
+}  // namespace compueye::recon::core

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "recon/core/dct.hpp"
+#include "recon/core/frame_info.hpp"
+#include "recon/core/linear_operator.hpp"
+#include "recon/core/packed_symmetric.hpp"
+
+namespace compueye::recon::core {
+
+/// Everything a frame is solved with, set up once and only read afterwards: views of tables owned by the caller
+/// (recon::Reconstructor on a computer with a heap, constant arrays on a microcontroller).
+///
+///   min 1/2 ||W^(1/2)(A x - y)||^2 + lambda ||Psi x||_1   subject to lo <= x <= hi
+template <class T>
+struct FrameProblem {
+  LinearOperator<T> a;                   ///< seeing rows only
+  PackedSymmetric<T> inverse;            ///< (A A' + rho I)^-1, order = a.rows
+  const std::int32_t* seeing = nullptr;  ///< a.rows channel numbers, ascending
+  std::size_t channels = 0;              ///< M: length of y and of the weights
+  std::size_t max_reweighted = 0;        ///< how many weights may differ from one in a frame
+  std::size_t image_rows = 0;
+  std::size_t image_cols = 0;  ///< image_rows * image_cols = a.cols
+  Dct2d<T> psi;                ///< used when point.basis is dct
+  bool constrained = false;
+  T lo = T(0);  ///< -infinity where there is no bound
+  T hi = T(0);  ///< +infinity where there is no bound
+  T lambda = T(0);
+  T rho = T(1);
+  T relaxation = T(1);
+  OperatingPoint point;  ///< point.iterations = K
+
+  [[nodiscard]] std::size_t pixels() const noexcept { return a.cols; }
+};
+
+}  // namespace compueye::recon::core

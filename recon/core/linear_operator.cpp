@@ -1,0 +1,99 @@
+#include "recon/core/linear_operator.hpp"
+
+#include "recon/core/multiversion.hpp"
+#include "recon/core/vector_sums.hpp"
+
+namespace compueye::recon::core {
+namespace {
+
+template <class T>
+COMPUEYE_INLINE T sparse_dot(const T* values, const std::int32_t* columns, const T* x, std::size_t n) {
+  T sum[lanes] = {};
+  std::size_t k = 0;
+  for (; k + lanes <= n; k += lanes) {
+    for (std::size_t l = 0; l < lanes; ++l) sum[l] += values[k + l] * x[columns[k + l]];
+  }
+  for (std::size_t l = 0; k + l < n; ++l) sum[l] += values[k + l] * x[columns[k + l]];
+  for (std::size_t half = lanes / 2; half > 0; half /= 2) {
+    for (std::size_t l = 0; l < half; ++l) sum[l] += sum[l + half];
+  }
+  return sum[0];
+}
+
+template <class T>
+COMPUEYE_INLINE void csr_forward(const LinearOperator<T>& a, const T* x, T* y) {
+  for (std::size_t m = 0; m < a.rows; ++m) {
+    const std::size_t begin = a.row_start[m];
+    y[m] = sparse_dot(a.values + begin, a.columns + begin, x, a.row_start[m + 1] - begin);
+  }
+}
+
+template <class T>
+COMPUEYE_INLINE void csr_adjoint(const LinearOperator<T>& a, const T* y, T* x) {
+  for (std::size_t m = 0; m < a.rows; ++m) {
+    const T scale = y[m];
+    for (std::size_t e = a.row_start[m]; e < a.row_start[m + 1]; ++e) x[a.columns[e]] += a.values[e] * scale;
+  }
+}
+
+/// Four rows in one pass over x; every element still adds its rows in ascending order.
+template <class T>
+COMPUEYE_INLINE void accumulate_four(const T* __restrict a, std::size_t stride, const T* y, T* __restrict x,
+                                     std::size_t n) {
+  const T *a0 = a, *a1 = a + stride, *a2 = a + 2 * stride, *a3 = a + 3 * stride;
+  const T y0 = y[0], y1 = y[1], y2 = y[2], y3 = y[3];
+  for (std::size_t k = 0; k < n; ++k) {
+    T sum = x[k];
+    sum += a0[k] * y0;
+    sum += a1[k] * y1;
+    sum += a2[k] * y2;
+    sum += a3[k] * y3;
+    x[k] = sum;
+  }
+}
+
+COMPUEYE_MULTIVERSION void csr_forward_clone(const LinearOperator<float>& a, const float* x, float* y) noexcept {
+  csr_forward(a, x, y);
+}
+COMPUEYE_MULTIVERSION void csr_forward_clone(const LinearOperator<double>& a, const double* x, double* y) noexcept {
+  csr_forward(a, x, y);
+}
+COMPUEYE_MULTIVERSION void four_rows(const float* a, std::size_t stride, const float* y, float* x,
+                                     std::size_t n) noexcept {
+  accumulate_four(a, stride, y, x, n);
+}
+COMPUEYE_MULTIVERSION void four_rows(const double* a, std::size_t stride, const double* y, double* x,
+                                     std::size_t n) noexcept {
+  accumulate_four(a, stride, y, x, n);
+}
+
+template <class T>
+void forward_of(const LinearOperator<T>& a, const T* x, T* y) noexcept {
+  if (a.kind == OperatorKind::csr) return csr_forward_clone(a, x, y);
+  for (std::size_t m = 0; m < a.rows; ++m) y[m] = dot(a.values + m * a.cols, x, a.cols);
+}
+
+template <class T>
+void adjoint_of(const LinearOperator<T>& a, const T* y, T* x) noexcept {
+  if (a.kind == OperatorKind::csr) return csr_adjoint(a, y, x);
+  std::size_t m = 0;
+  for (; m + 4 <= a.rows; m += 4) four_rows(a.values + m * a.cols, a.cols, y + m, x, a.cols);
+  for (; m < a.rows; ++m) accumulate(a.values + m * a.cols, y[m], x, a.cols);
+}
+
+}  // namespace
+
+void forward(const LinearOperator<float>& a, const float* x, float* y) noexcept {
+  forward_of(a, x, y);
+}
+void forward(const LinearOperator<double>& a, const double* x, double* y) noexcept {
+  forward_of(a, x, y);
+}
+void adjoint_accumulate(const LinearOperator<float>& a, const float* y, float* x) noexcept {
+  adjoint_of(a, y, x);
+}
+void adjoint_accumulate(const LinearOperator<double>& a, const double* y, double* x) noexcept {
+  adjoint_of(a, y, x);
+}
+
+}  // namespace compueye::recon::core

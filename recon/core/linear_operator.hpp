@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "recon/core/frame_info.hpp"
+
+namespace compueye::recon::core {
+
+/// A (rows x cols) as the frame path sees it: a view of tables that somebody else owns.
+/// dense: values row-major. csr: row m holds entries row_start[m] .. row_start[m+1]-1.
+template <class T>
+struct LinearOperator {
+  OperatorKind kind = OperatorKind::dense;
+  std::size_t rows = 0;
+  std::size_t cols = 0;
+  const T* values = nullptr;
+  const std::uint32_t* row_start = nullptr;
+  const std::int32_t* columns = nullptr;
+};
+
+/// y = A x
+void forward(const LinearOperator<float>& a, const float* x, float* y) noexcept;
+void forward(const LinearOperator<double>& a, const double* x, double* y) noexcept;
+
+/// x += A' y. Rows are added in ascending order.
+void adjoint_accumulate(const LinearOperator<float>& a, const float* y, float* x) noexcept;
+void adjoint_accumulate(const LinearOperator<double>& a, const double* y, double* x) noexcept;
+
+}  // namespace compueye::recon::core

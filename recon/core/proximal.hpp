@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+
+namespace compueye::recon::core {
+
+/// The proximal map of  threshold * |x| + indicator(lo <= x <= hi), one number at a time: soft threshold, then clip.
+/// Right for lo <= 0 <= hi and for lo > 0 alike, because the sum is convex on the line. lo and hi may be infinite.
+template <class T>
+[[nodiscard]] constexpr T prox_l1_box(T t, T threshold, T lo, T hi) noexcept {
+  const T up = t - threshold, down = t + threshold;
+  const T shrunk = (up > T(0) ? up : T(0)) + (down < T(0) ? down : T(0));
+  const T above = shrunk > lo ? shrunk : lo;
+  return above < hi ? above : hi;
+}
+
+/// One over-relaxed ADMM half-step on a block of n variables (Boyd et al. 2011, eq. 3.19 with 3.1.1's scaled dual):
+///   t = relaxation * x + (1 - relaxation) * z + u;  z = prox(t);  u = t - z
+/// Values of u below `tiny` become zero, so that no dual decays into subnormal numbers.
+void relaxed_prox_step(const float* x, float* z, float* u, std::size_t n, float relaxation, float threshold, float lo,
+                       float hi) noexcept;
+void relaxed_prox_step(const double* x, double* z, double* u, std::size_t n, double relaxation, double threshold,
+                       double lo, double hi) noexcept;
+
+/// out = (a - b), the point around which the next quadratic step is taken.
+void subtract(const float* a, const float* b, float* out, std::size_t n) noexcept;
+void subtract(const double* a, const double* b, double* out, std::size_t n) noexcept;
+
+/// out = share * out + (1 - share) * (a - b)
+void blend_difference(const float* a, const float* b, float share, float* out, std::size_t n) noexcept;
+void blend_difference(const double* a, const double* b, double share, double* out, std::size_t n) noexcept;
+
+/// Magnitudes below this are noughts to the frame path. White is 1 and an LSB at least 1e-6 of it, so nothing is lost,
+/// and products with entries of A above 1e-13 stay far above the smallest normal float32.
+inline constexpr double tiny = 1e-20;
+
+void flush_tiny(float* a, std::size_t n) noexcept;
+void flush_tiny(double* a, std::size_t n) noexcept;
+
+}  // namespace compueye::recon::core

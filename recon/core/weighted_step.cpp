@@ -1,0 +1,98 @@
+#include "recon/core/weighted_step.hpp"
+
+#include "recon/core/cholesky.hpp"
+#include "recon/core/proximal.hpp"
+#include "recon/core/vector_sums.hpp"
+
+namespace compueye::recon::core {
+
+template <class T>
+WeightedStep<T>::WeightedStep(const FrameProblem<T>& problem, Workspace& workspace) noexcept
+    : problem_(&problem),
+      samples_(workspace.take<T>(problem.a.rows)),
+      weights_(workspace.take<T>(problem.a.rows)),
+      residual_(workspace.take<T>(problem.a.rows)),
+      correction_(workspace.take<T>(problem.a.rows)),
+      index_(workspace.take<std::size_t>(problem.max_reweighted)),
+      inverse_rows_(workspace.take<T>(problem.max_reweighted * problem.a.rows)),
+      substitution_(workspace.take<double>(problem.max_reweighted * problem.max_reweighted)),
+      unknown_(workspace.take<double>(problem.max_reweighted)) {}
+
+template <class T>
+bool WeightedStep<T>::begin(const float* y, const float* weights) noexcept {
+  used_ = 0;
+  reweighted_ = 0;
+  if (!gather(y, weights) || !all_finite(samples_, problem_->a.rows)) return false;
+  return factor_substitution();
+}
+
+template <class T>
+bool WeightedStep<T>::gather(const float* y, const float* weights) noexcept {
+  for (std::size_t i = 0; i < problem_->a.rows; ++i) {
+    const auto channel = static_cast<std::size_t>(problem_->seeing[i]);
+    const T weight = weights == nullptr ? T(1) : static_cast<T>(weights[channel]);
+    if (!(weight >= T(0) && weight <= T(1))) return false;
+    weights_[i] = weight;
+    samples_[i] = weight > T(0) ? static_cast<T>(y[channel]) : T(0);
+    if (weight > T(0)) ++used_;
+    if (weight == T(1)) continue;
+    if (reweighted_ == problem_->max_reweighted) return false;
+    index_[reweighted_++] = i;
+  }
+  return true;
+}
+
+template <class T>
+bool WeightedStep<T>::factor_substitution() noexcept {
+  const std::size_t n = reweighted_;
+  for (std::size_t s = 0; s < n; ++s) {
+    T* row = inverse_rows_ + s * problem_->a.rows;
+    expand_row(problem_->inverse, index_[s], row);
+    for (std::size_t t = 0; t <= s; ++t) substitution_[s * n + t] = static_cast<double>(row[index_[t]]);
+    const double weight = static_cast<double>(weights_[index_[s]]);
+    substitution_[s * n + s] += weight / (static_cast<double>(problem_->rho) * (1.0 - weight));
+  }
+  return n == 0 || cholesky_factor(substitution_, n);
+}
+
+template <class T>
+void WeightedStep<T>::substitute() noexcept {
+  for (std::size_t s = 0; s < reweighted_; ++s) {
+    unknown_[s] = static_cast<double>(dot(inverse_rows_ + s * problem_->a.rows, residual_, problem_->a.rows));
+  }
+  cholesky_solve(substitution_, reweighted_, unknown_);
+  for (std::size_t s = 0; s < reweighted_; ++s) residual_[index_[s]] -= static_cast<T>(unknown_[s]);
+}
+
+template <class T>
+void WeightedStep<T>::apply(T* v) noexcept {
+  const std::size_t rows = problem_->a.rows;
+  forward(problem_->a, v, residual_);
+  for (std::size_t i = 0; i < rows; ++i) {
+    residual_[i] = weights_[i] > T(0) ? samples_[i] - residual_[i] : T(0);
+  }
+  if (reweighted_ > 0) substitute();
+  flush_tiny(residual_, rows);
+  multiply(problem_->inverse, residual_, correction_);
+  for (std::size_t s = 0; s < reweighted_; ++s) {
+    if (weights_[index_[s]] == T(0)) correction_[index_[s]] = T(0);
+  }
+  flush_tiny(correction_, rows);
+  adjoint_accumulate(problem_->a, correction_, v);
+  flush_tiny(v, problem_->pixels());
+}
+
+template <class T>
+double WeightedStep<T>::squared_residual(const T* x) noexcept {
+  forward(problem_->a, x, residual_);
+  for (std::size_t i = 0; i < problem_->a.rows; ++i) {
+    residual_[i] = weights_[i] > T(0) ? residual_[i] - samples_[i] : T(0);
+    correction_[i] = weights_[i] * residual_[i];
+  }
+  return static_cast<double>(dot(residual_, correction_, problem_->a.rows));
+}
+
+template class WeightedStep<float>;
+template class WeightedStep<double>;
+
+}  // namespace compueye::recon::core

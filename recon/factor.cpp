@@ -1,0 +1,224 @@
+#include "recon/factor.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <thread>
+
+#include "recon/core/packed_symmetric.hpp"
+#include "recon/gram_matrix.hpp"
+#include "recon/mirror_symmetry.hpp"
+
+namespace compueye::recon {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+/// Where a row of A stands among its mirror images.
+struct Place {
+  int orbit = 0;    // which set of mirror images
+  int element = 0;  // which permutation takes the orbit's first row to this one
+};
+
+struct Orbit {
+  int first = 0;       // its lowest row
+  int stabiliser = 1;  // how many permutations leave that row where it is
+};
+
+/// One parity class: the orbits that have a component in it, and A A' + rho I (then its inverse) between them.
+struct ParityBlock {
+  std::vector<int> position;  // orbit -> index in the block, -1 when the class has no such component
+  Matrix matrix;
+};
+
+/// Calls work(i) for i = 0 .. count-1 on all cores while this thread reports; false when the user gave up.
+template <class Work>
+bool on_all_cores(int count, std::string_view what, const Progress& progress, Work make_work) {
+  if (progress && !progress(what, 0, count)) return false;
+  std::atomic<int> next{0}, done{0};
+  std::atomic<bool> stop{false};
+  const auto body = [&] {
+    auto work = make_work();
+    for (int i = next++; i < count && !stop; i = next++) {
+      work(i);
+      ++done;
+    }
+  };
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<std::thread> threads;
+  for (unsigned t = 0; t < std::min(cores, static_cast<unsigned>(count)); ++t) threads.emplace_back(body);
+  while (done < count && !stop) {
+    if (progress && !progress(what, done, count)) stop = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  for (std::thread& thread : threads) thread.join();
+  if (!stop && progress) progress(what, count, count);
+  return !stop;
+}
+
+class BlockInverse {
+ public:
+  BlockInverse(const Response& seeing, int image_rows, int image_cols, const Progress& progress)
+      : gram_(seeing), symmetry_(find_mirror_symmetry(seeing, image_rows, image_cols)), progress_(progress) {
+    find_orbits();
+    find_blocks();
+  }
+
+  [[nodiscard]] hal::Result<void> compute(double rho) {
+    const bool made = on_all_cores(static_cast<int>(orbits_.size()), "A A'", progress_, [this] {
+      return [this, scratch = std::vector<double>(static_cast<std::size_t>(gram_.cols()), 0.0),
+              row = std::vector<double>(static_cast<std::size_t>(gram_.order()))](int orbit) mutable {
+        gram_.row(orbits_[static_cast<std::size_t>(orbit)].first, scratch, row);
+        fill_row(orbit, row);
+      };
+    });
+    if (!made) return interrupted();
+    std::atomic<bool> definite{true};
+    const bool inverted = on_all_cores(static_cast<int>(blocks_.size()), "inverse", progress_, [this, rho, &definite] {
+      return [this, rho, &definite](int b) {
+        if (!invert(blocks_[static_cast<std::size_t>(b)].matrix, rho)) definite = false;
+      };
+    });
+    if (!inverted) return interrupted();
+    if (!definite) {
+      return hal::fail(hal::ErrorCode::out_of_range, "rho",
+                       "is " + std::to_string(rho) +
+                           ", too small for this response: A A' + rho I is not positive definite in double precision; "
+                           "choose a larger --lambda or rho");
+    }
+    return {};
+  }
+
+  /// Row i of the inverse from column i on, into `out`.
+  template <class T>
+  void row_from_diagonal(int i, T* out) const {
+    const Place at = places_[static_cast<std::size_t>(i)];
+    for (int j = i; j < gram_.order(); ++j) {
+      const Place to = places_[static_cast<std::size_t>(j)];
+      double sum = 0.0;
+      for (std::size_t c = 0; c < blocks_.size(); ++c) {
+        const int p = blocks_[c].position[static_cast<std::size_t>(at.orbit)];
+        const int q = blocks_[c].position[static_cast<std::size_t>(to.orbit)];
+        if (p < 0 || q < 0) continue;
+        const int sign = character(c, at.element) * character(c, to.element);
+        sum += sign * blocks_[c].matrix(q, p);
+      }
+      out[j - i] = static_cast<T>(sum * component(at.orbit) * component(to.orbit));
+    }
+  }
+
+  [[nodiscard]] int order() const noexcept { return gram_.order(); }
+
+ private:
+  [[nodiscard]] static tl::unexpected<hal::Error> interrupted() {
+    return hal::fail(hal::ErrorCode::interrupted, "set-up", "stopped before the factor was finished");
+  }
+
+  [[nodiscard]] int character(std::size_t block, int element) const {
+    return symmetry_.characters[block][static_cast<std::size_t>(element)];
+  }
+
+  /// Size of an orbit's unit vector at each of its rows: sqrt(stabiliser / group order).
+  [[nodiscard]] double component(int orbit) const {
+    const double stabiliser = orbits_[static_cast<std::size_t>(orbit)].stabiliser;
+    return std::sqrt(stabiliser / static_cast<double>(symmetry_.order()));
+  }
+
+  void find_orbits() {
+    places_.assign(static_cast<std::size_t>(gram_.order()), {-1, 0});
+    for (int m = 0; m < gram_.order(); ++m) {
+      if (places_[static_cast<std::size_t>(m)].orbit >= 0) continue;
+      Orbit orbit{m, 0};
+      for (std::size_t g = 0; g < symmetry_.order(); ++g) {
+        const auto image = static_cast<std::size_t>(symmetry_.permutations[g][static_cast<std::size_t>(m)]);
+        if (image == static_cast<std::size_t>(m)) ++orbit.stabiliser;
+        if (places_[image].orbit < 0) places_[image] = {static_cast<int>(orbits_.size()), static_cast<int>(g)};
+      }
+      orbits_.push_back(orbit);
+    }
+  }
+
+  /// A class has a component on an orbit only when its sign is +1 on everything that leaves the orbit's row in place.
+  void find_blocks() {
+    for (const std::vector<int>& signs : symmetry_.characters) {
+      ParityBlock block;
+      int size = 0;
+      for (const Orbit& orbit : orbits_) {
+        bool present = true;
+        for (std::size_t g = 0; g < symmetry_.order(); ++g) {
+          const bool fixed = symmetry_.permutations[g][static_cast<std::size_t>(orbit.first)] == orbit.first;
+          present = present && (!fixed || signs[g] == 1);
+        }
+        block.position.push_back(present ? size++ : -1);
+      }
+      block.matrix.resize(size, size);
+      blocks_.push_back(std::move(block));
+    }
+  }
+
+  /// Between unit vectors of two orbits p, q in class c: (|G| / (norm_p norm_q)) sum_g c(g) (A A')(p, g q).
+  void fill_row(int p, const std::vector<double>& row) {
+    const double group = static_cast<double>(symmetry_.order());
+    for (std::size_t c = 0; c < blocks_.size(); ++c) {
+      ParityBlock& block = blocks_[c];
+      const int at = block.position[static_cast<std::size_t>(p)];
+      if (at < 0) continue;
+      const double stabiliser_p = orbits_[static_cast<std::size_t>(p)].stabiliser;
+      for (std::size_t q = 0; q < orbits_.size(); ++q) {
+        const int to = block.position[q];
+        if (to < 0) continue;
+        double sum = 0.0;
+        for (std::size_t g = 0; g < symmetry_.order(); ++g) {
+          const auto image = symmetry_.permutations[g][static_cast<std::size_t>(orbits_[q].first)];
+          sum += symmetry_.characters[c][g] * row[static_cast<std::size_t>(image)];
+        }
+        const double norms = std::sqrt(stabiliser_p * group) * std::sqrt(orbits_[q].stabiliser * group);
+        block.matrix(to, at) = sum * group / norms;
+      }
+    }
+  }
+
+  [[nodiscard]] static bool invert(Matrix& matrix, double rho) {
+    if (matrix.size() == 0) return true;
+    matrix.diagonal().array() += rho;
+    Eigen::LLT<Eigen::Ref<Matrix>> factor(matrix);
+    if (factor.info() != Eigen::Success) return false;
+    Matrix inverse = Matrix::Identity(matrix.rows(), matrix.cols());
+    factor.solveInPlace(inverse);
+    matrix = 0.5 * (inverse + inverse.transpose());
+    return matrix.allFinite();
+  }
+
+  GramMatrix gram_;
+  MirrorSymmetry symmetry_;
+  const Progress& progress_;
+  std::vector<Place> places_;
+  std::vector<Orbit> orbits_;
+  std::vector<ParityBlock> blocks_;
+};
+
+}  // namespace
+
+template <class T>
+hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols, double rho,
+                                           const Progress& progress) {
+  BlockInverse inverse(seeing, image_rows, image_cols, progress);
+  if (auto done = inverse.compute(rho); !done) return tl::unexpected(done.error());
+  const auto order = static_cast<std::size_t>(inverse.order());
+  std::vector<T> packed(core::PackedSymmetric<T>::size(order));
+  T* row = packed.data();
+  for (std::size_t i = 0; i < order; ++i) {
+    inverse.row_from_diagonal(static_cast<int>(i), row);
+    row += order - i;
+  }
+  return packed;
+}
+
+template hal::Result<std::vector<float>> packed_inverse(const Response&, int, int, double, const Progress&);
+template hal::Result<std::vector<double>> packed_inverse(const Response&, int, int, double, const Progress&);
+
+}  // namespace compueye::recon

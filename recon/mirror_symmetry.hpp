@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "recon/response.hpp"
+
+namespace compueye::recon {
+
+/// The mirror images that leave a response unchanged: flipping the picture about an axis only permutes the rows of A.
+/// An eye on a regular lattice has both; a measured eye has none, and is its own only image.
+struct MirrorSymmetry {
+  /// 1, 2 or 4 permutations of the rows; the first is the identity, each is its own inverse and any two commute.
+  std::vector<std::vector<std::int32_t>> permutations;
+  /// characters[c][g] = +-1: the sign that parity class c takes under permutation g.
+  std::vector<std::vector<int>> characters;
+
+  [[nodiscard]] std::size_t order() const noexcept { return permutations.size(); }
+};
+
+/// Looks for left-right and up-down symmetry of a response on an image_rows x image_cols picture. Entries may differ by
+/// 1e-11 of the largest.
+[[nodiscard]] MirrorSymmetry find_mirror_symmetry(const Response& response, int image_rows, int image_cols);
+
+}  // namespace compueye::recon

@@ -1,0 +1,148 @@
+#include "recon/reconstructor.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "random_problem.hpp"
+#include "solve_frame.hpp"
+
+using namespace compueye;
+using namespace compueye::tests;
+using hal::ErrorCode;
+using recon::Reconstructor;
+
+namespace {
+
+recon::Response some_response() {
+  Random random(91);
+  return random_response(random, 20, 48, 0.4);
+}
+
+recon::Objective dct_box(double lambda) {
+  recon::Objective objective;
+  objective.basis = recon::BasisKind::dct;
+  objective.constraint = recon::ConstraintKind::box;
+  objective.lambda = lambda;
+  return objective;
+}
+
+}  // namespace
+
+TEST_CASE("set-up refuses what makes no sense, and says what it expected") {
+  const recon::Response a = some_response();
+  const auto code = [&](const recon::Objective& objective, const recon::Plan& plan, int rows = 6, int cols = 8) {
+    const auto made = Reconstructor::create(a, rows, cols, objective, plan);
+    REQUIRE_FALSE(made.has_value());
+    CHECK_FALSE(made.error().sentence.empty());
+    return made.error().code;
+  };
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  CHECK(code(dct_box(0.1), {}, 6, 9) == ErrorCode::mismatch);
+  CHECK(code(dct_box(0.1), {}, 0, 0) == ErrorCode::mismatch);
+  for (const double lambda : {-1.0, nan, inf}) CHECK(code(dct_box(lambda), {}) == ErrorCode::out_of_range);
+  for (const int iterations : {0, -3, 1'000'001}) {
+    recon::Plan plan;
+    plan.iterations = iterations;
+    CHECK(code(dct_box(0.1), plan) == ErrorCode::out_of_range);
+  }
+  for (const double relaxation : {0.0, 2.0, nan}) {
+    recon::Plan plan;
+    plan.relaxation = relaxation;
+    CHECK(code(dct_box(0.1), plan) == ErrorCode::out_of_range);
+  }
+  recon::Objective box = dct_box(0.1);
+  box.lo = 1.0;
+  CHECK(code(box, {}) == ErrorCode::out_of_range);
+  recon::Plan tikhonov;
+  tikhonov.solver = recon::SolverKind::tikhonov;
+  CHECK(code(dct_box(0.1), tikhonov) == ErrorCode::usage);
+  const auto blind = recon::Response::from_dense(3, 4, std::vector<double>(12, 0.0)).value();
+  CHECK(Reconstructor::create(blind, 2, 2, {}, {}).error().sentence.find("sees nothing") != std::string::npos);
+}
+
+TEST_CASE("a stored factor is used when it fits and refused when stale") {
+  const recon::Response a = some_response();
+  const auto first = Reconstructor::create(a, 6, 8, dct_box(0.1), {}).value();
+  const std::vector<float> y(20, 1.0F);
+  const auto again = Reconstructor::create(a, 6, 8, dct_box(0.1), {}, first.factor()).value();
+  CHECK(solve_frame(first, y).x == solve_frame(again, y).x);
+  const auto stale = Reconstructor::create(a, 6, 8, dct_box(0.2), {}, first.factor());
+  REQUIRE_FALSE(stale.has_value());
+  CHECK(stale.error().code == ErrorCode::stale);
+}
+
+TEST_CASE("required_bytes is exact: a solver touches its last byte and none beyond") {
+  const recon::Response a = some_response();
+  const std::vector<float> y(20, 1.0F);
+  for (const auto& objective : {recon::Objective{}, dct_box(0.1)}) {
+    for (const auto precision : {recon::Precision::f32, recon::Precision::f64}) {
+      for (const auto kind : {recon::SolverKind::admm, recon::SolverKind::tikhonov}) {
+        recon::Plan plan;
+        plan.solver = kind;
+        plan.precision = precision;
+        plan.iterations = 3;
+        plan.max_reweighted = 2;
+        recon::Objective used = kind == recon::SolverKind::tikhonov ? recon::Objective{} : objective;
+        used.lambda = 0.1;
+        const auto solver = Reconstructor::create(a, 6, 8, used, plan).value();
+        const std::size_t bytes = solver.required_bytes();
+        const AlignedBytes memory(bytes + 256);
+        std::memset(memory.span().data(), 0xA5, bytes + 256);
+        std::vector<float> x(48), weights(20, 1.0F);
+        weights[4] = weights[9] = 0.0F;
+        const auto info = solver.solve(y, weights, memory.span().first(bytes), x);
+        CHECK(info.health != recon::Health::invalid);
+        for (std::size_t k = bytes; k < bytes + 256; ++k) CHECK(memory.span()[k] == std::byte{0xA5});
+        bool touched = false;  // the last 64-byte piece is in use
+        for (std::size_t k = bytes - 64; k < bytes; ++k) touched = touched || memory.span()[k] != std::byte{0xA5};
+        CHECK(touched);
+        CHECK(solver.solve(y, weights, memory.span().first(bytes - 64), x).health == recon::Health::invalid);
+        CHECK(solver.solve(y, weights, memory.span().subspan(1, bytes), x).health == recon::Health::invalid);
+      }
+    }
+  }
+}
+
+TEST_CASE("the same input gives the same bits, whatever was in the workspace before") {
+  const recon::Response a = some_response();
+  const auto solver = Reconstructor::create(a, 6, 8, dct_box(0.05), {}).value();
+  Random random(92);
+  const auto y = to_float(random_vector(random, 20, 0, 3)), other = to_float(random_vector(random, 20, 0, 3));
+  const AlignedBytes memory(solver.required_bytes());
+  std::vector<float> first(48), second(48), between(48);
+  std::memset(memory.span().data(), 0, memory.span().size());
+  solver.solve(y, {}, memory.span(), first);
+  solver.solve(other, {}, memory.span(), between);
+  std::memset(memory.span().data(), 0xFF, memory.span().size());
+  solver.solve(y, {}, memory.span(), second);
+  CHECK(std::memcmp(first.data(), second.data(), 48 * sizeof(float)) == 0);
+  CHECK(first != between);
+}
+
+TEST_CASE("a dark frame stays dark and quick: no subnormal numbers in the answer") {
+  const recon::Response a = some_response();
+  for (const auto& objective : {recon::Objective{}, dct_box(0.05)}) {
+    recon::Plan plan;
+    plan.iterations = 2000;
+    const auto solver = Reconstructor::create(a, 6, 8, objective, plan).value();
+    for (const float level : {0.0F, 1e-12F, 1e-25F, 1e-40F}) {
+      const SolvedFrame frame = solve_frame(solver, std::vector<float>(20, level));
+      CHECK(frame.info.health != recon::Health::invalid);
+      for (const float v : frame.x) CHECK((v == 0.0F || std::isnormal(v)));
+    }
+  }
+}
+
+TEST_CASE("a solver can be moved and still owns its tables") {
+  const recon::Response a = some_response();
+  auto made = Reconstructor::create(a, 6, 8, dct_box(0.1), {});
+  const std::vector<float> y(20, 1.0F);
+  const auto before = solve_frame(*made, y).x;
+  const Reconstructor moved = std::move(*made);
+  CHECK(solve_frame(moved, y).x == before);
+  CHECK(moved.table_bytes() > 0);
+  CHECK(moved.operating_point().iterations == 100);
+}

@@ -1,0 +1,58 @@
+#include "recon/response.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "random_problem.hpp"
+
+using namespace compueye;
+using hal::ErrorCode;
+using recon::Response;
+
+TEST_CASE("a response refuses what is not a matrix") {
+  CHECK(Response::from_dense(0, 3, {}).error().code == ErrorCode::out_of_range);
+  CHECK(Response::from_dense(2, 2, {1, 2, 3}).error().code == ErrorCode::mismatch);
+  const auto nan = Response::from_dense(2, 2, {1, 2, std::nan(""), 4});
+  REQUIRE_FALSE(nan.has_value());
+  CHECK(nan.error().sentence.find("(1, 0)") != std::string::npos);
+  const double inf = std::numeric_limits<double>::infinity();
+  CHECK(Response::from_csr(1, 2, {0, 1}, {1}, {inf}).error().sentence.find("(0, 1)") != std::string::npos);
+  CHECK(Response::from_csr(1, 2, {0, 1}, {2}, {1}).error().code == ErrorCode::bad_format);
+  CHECK(Response::from_csr(1, 3, {0, 2}, {1, 1}, {1, 1}).error().code == ErrorCode::bad_format);
+  CHECK(Response::from_csr(2, 3, {0, 2, 1}, {0, 1}, {1, 1}).error().code == ErrorCode::mismatch);
+}
+
+TEST_CASE("dense and sparse forms of one matrix act alike") {
+  tests::Random random(51);
+  const Response sparse = tests::random_response(random, 9, 14, 0.4);
+  std::vector<double> values(9 * 14, 0.0);
+  for (int m = 0; m < 9; ++m) {
+    sparse.for_each_in_row(m, [&](std::int32_t n, double v) { values[static_cast<std::size_t>(m * 14 + n)] = v; });
+  }
+  const Response dense = Response::from_dense(9, 14, values).value();
+  const auto x = tests::random_vector(random, 14), y = tests::random_vector(random, 9);
+  std::vector<double> ys(9), yd(9), xs(14), xd(14);
+  sparse.forward(x, ys);
+  dense.forward(x, yd);
+  sparse.adjoint(y, xs);
+  dense.adjoint(y, xd);
+  for (std::size_t k = 0; k < 9; ++k) CHECK(ys[k] == doctest::Approx(yd[k]));
+  for (std::size_t k = 0; k < 14; ++k) CHECK(xs[k] == doctest::Approx(xd[k]));
+  CHECK(sparse.nonzeros() == dense.nonzeros());
+  CHECK(sparse.content_hash() != dense.content_hash());
+}
+
+TEST_CASE("blind rows are found and rows can be selected and scaled") {
+  const Response a = Response::from_dense(3, 2, {0, 0, 1, 2, 0, 3}).value();
+  CHECK(a.seeing_rows() == std::vector<std::int32_t>{1, 2});
+  CHECK(a.row_sums() == std::vector<double>{0, 3, 3});
+  const Response b = a.select_rows(std::vector<std::int32_t>{2, 1}, std::vector<double>{2.0, 10.0});
+  CHECK(b.rows() == 2);
+  CHECK(b.values()[1] == 6.0);
+  CHECK(b.values()[2] == 10.0);
+  CHECK(a.content_hash() == Response::from_dense(3, 2, {0, 0, 1, 2, 0, 3}).value().content_hash());
+  CHECK(a.content_hash() != Response::from_dense(3, 2, {0, 0, 1, 2, 0, 3.0000001}).value().content_hash());
+  CHECK(a.content_hash() != Response::from_dense(2, 3, {0, 0, 1, 2, 0, 3}).value().content_hash());
+}

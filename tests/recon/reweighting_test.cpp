@@ -1,0 +1,138 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "random_problem.hpp"
+#include "recon/reference/reference_solver.hpp"
+#include "solve_frame.hpp"
+
+using namespace compueye;
+using namespace compueye::tests;
+
+namespace {
+
+struct Case {
+  recon::Response a;
+  std::vector<float> y;
+  recon::Objective objective;
+  recon::Plan plan;
+};
+
+Case make_case(recon::BasisKind basis, recon::ConstraintKind constraint) {
+  Random random(81);
+  Case c{random_response(random, 40, 80, 0.3), {}, {}, {}};
+  std::vector<double> truth(80, 0.0), y(40);
+  for (double& v : truth) v = random.uniform() < 0.3 ? random.uniform(0.3, 1.0) : 0.0;
+  c.a.forward(truth, y);
+  for (double& v : y) v += 0.02 * random.normal();
+  c.y = to_float(y);
+  c.objective.basis = basis;
+  c.objective.constraint = constraint;
+  c.objective.lambda = 0.05;
+  c.plan.iterations = 300;
+  c.plan.max_reweighted = 40;
+  return c;
+}
+
+/// The same problem with the weights in the rows, and a new factor made for it.
+SolvedFrame solve_refactored(const Case& c, const std::vector<float>& weights, double rho) {
+  std::vector<std::int32_t> rows;
+  std::vector<double> scale;
+  std::vector<float> y;
+  for (std::size_t m = 0; m < weights.size(); ++m) {
+    if (weights[m] == 0.0F) continue;
+    rows.push_back(static_cast<std::int32_t>(m));
+    scale.push_back(std::sqrt(static_cast<double>(weights[m])));
+    y.push_back(c.y[m] * static_cast<float>(scale.back()));
+  }
+  recon::Plan plan = c.plan;
+  plan.rho = rho;
+  plan.precision = recon::Precision::f64;
+  const auto solver = recon::Reconstructor::create(c.a.select_rows(rows, scale), 8, 10, c.objective, plan);
+  return solve_frame(solver.value(), y);
+}
+
+double relative_difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double difference = 0.0, size = 1e-30;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    difference += (static_cast<double>(a[k]) - static_cast<double>(b[k])) *
+                  (static_cast<double>(a[k]) - static_cast<double>(b[k]));
+    size += static_cast<double>(b[k]) * static_cast<double>(b[k]);
+  }
+  return std::sqrt(difference / size);
+}
+
+}  // namespace
+
+TEST_CASE("weights of a frame act like a new factor, to 1e-3, for every basis and constraint") {
+  Random random(82);
+  for (const auto basis : {recon::BasisKind::identity, recon::BasisKind::dct}) {
+    for (const auto constraint :
+         {recon::ConstraintKind::none, recon::ConstraintKind::nonnegative, recon::ConstraintKind::box}) {
+      const Case c = make_case(basis, constraint);
+      const auto solver = recon::Reconstructor::create(c.a, 8, 10, c.objective, c.plan);
+      REQUIRE(solver.has_value());
+      for (const double share : {0.0, 0.025, 0.05, 0.3, 0.9}) {
+        std::vector<float> weights(40, 1.0F);
+        for (float& w : weights) {
+          if (random.uniform() < share)
+            w = random.uniform() < 0.5 ? 0.0F : static_cast<float>(random.uniform(0.05, 1.0));
+        }
+        const SolvedFrame fast = solve_frame(*solver, c.y, weights);
+        const SolvedFrame slow = solve_refactored(c, weights, solver->plan().rho);
+        CHECK(relative_difference(fast.x, slow.x) < 1e-3);
+        CHECK(fast.info.objective == doctest::Approx(slow.info.objective).epsilon(1e-3));
+        CHECK(fast.info.channels_reweighted ==
+              static_cast<int>(std::count_if(weights.begin(), weights.end(), [](float w) { return w != 1.0F; })));
+      }
+    }
+  }
+}
+
+TEST_CASE("what a missing channel reads does not change a bit, NaN and infinity included") {
+  const Case c = make_case(recon::BasisKind::dct, recon::ConstraintKind::box);
+  const auto solver = recon::Reconstructor::create(c.a, 8, 10, c.objective, c.plan).value();
+  std::vector<float> weights(40, 1.0F), y = c.y;
+  weights[3] = weights[17] = 0.0F;
+  const SolvedFrame plain = solve_frame(solver, y, weights);
+  y[3] = std::nanf("");
+  y[17] = HUGE_VALF;
+  const SolvedFrame odd = solve_frame(solver, y, weights);
+  CHECK(plain.x == odd.x);
+  CHECK(plain.info.channels_used == 38);
+}
+
+TEST_CASE("bad samples, bad weights and too many of them make a frame invalid, not wrong") {
+  Case c = make_case(recon::BasisKind::identity, recon::ConstraintKind::nonnegative);
+  c.plan.max_reweighted = 2;
+  const auto solver = recon::Reconstructor::create(c.a, 8, 10, c.objective, c.plan).value();
+  const auto check_invalid = [&](const std::vector<float>& y, const std::vector<float>& weights) {
+    const SolvedFrame frame = solve_frame(solver, y, weights);
+    CHECK(frame.info.health == recon::Health::invalid);
+    CHECK(std::all_of(frame.x.begin(), frame.x.end(), [](float v) { return v == 0.0F; }));
+  };
+  std::vector<float> y = c.y, ones(40, 1.0F);
+  y[5] = std::nanf("");
+  check_invalid(y, ones);
+  y[5] = -HUGE_VALF;
+  check_invalid(y, {});
+  for (const float bad : {-0.1F, 1.1F, std::nanf("")}) {
+    std::vector<float> weights = ones;
+    weights[0] = bad;
+    check_invalid(c.y, weights);
+  }
+  std::vector<float> three = ones;
+  three[1] = three[2] = three[3] = 0.0F;
+  check_invalid(c.y, three);
+  check_invalid(std::vector<float>(40, 3e38F), ones);
+}
+
+TEST_CASE("a frame with every channel missing is black and not a failure") {
+  const Case c = make_case(recon::BasisKind::dct, recon::ConstraintKind::box);
+  const auto solver = recon::Reconstructor::create(c.a, 8, 10, c.objective, c.plan).value();
+  const SolvedFrame frame = solve_frame(solver, c.y, std::vector<float>(40, 0.0F));
+  CHECK(frame.info.health != recon::Health::invalid);
+  CHECK(frame.info.channels_used == 0);
+  for (const float v : frame.x) CHECK(std::abs(v) < 1e-6F);
+}
