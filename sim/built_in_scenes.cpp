@@ -1,0 +1,92 @@
+#include "sim/built_in_scenes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "sim/pictures/pictures.hpp"
+
+namespace compueye::sim {
+namespace {
+
+using hal::ErrorCode;
+using hal::fail;
+
+struct Generator {
+  BuiltInScene scene;
+  hal::Result<hal::Image> (*render)(int rows, int cols, std::uint64_t seed);
+};
+
+constexpr std::array<Generator, 5> generators{{
+    {{"line-art", "a line drawing, 23 % of the pixels lit (seed 0: a butterfly; others: house, fish, boat, butterfly)"},
+     [](int rows, int cols, std::uint64_t seed) -> hal::Result<hal::Image> {
+       return pictures::line_art(rows, cols, seed);
+     }},
+    {{"phantom", "the modified Shepp-Logan head (seed 0: as MATLAB's phantom(n); others: ellipses moved at random)"},
+     [](int rows, int cols, std::uint64_t seed) -> hal::Result<hal::Image> {
+       return pictures::phantom(rows, cols, seed);
+     }},
+    {{"bars", "resolution bars of eight widths, upright and lying (1 to 10 pixels at 160x160)"},
+     [](int rows, int cols, std::uint64_t seed) -> hal::Result<hal::Image> {
+       return pictures::bars(rows, cols, seed);
+     }},
+    {{"dots", "single bright pixels on black, one in a hundred"},
+     [](int rows, int cols, std::uint64_t seed) -> hal::Result<hal::Image> {
+       return pictures::dots(rows, cols, seed);
+     }},
+    {{"fig2", "a face of 19 pixels on 16x16, enlarged by whole factors; the same for every seed"},
+     [](int rows, int cols, std::uint64_t) { return pictures::fig2(rows, cols); }},
+}};
+
+constexpr auto listed = [] {
+  std::array<BuiltInScene, generators.size()> scenes{};
+  for (std::size_t i = 0; i < generators.size(); ++i) scenes[i] = generators[i].scene;
+  return scenes;
+}();
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+tl::unexpected<hal::Error> unknown(std::string_view name) {
+  const auto nearest = std::min_element(listed.begin(), listed.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(a.name, name) < edit_distance(b.name, name);
+  });
+  std::string known;
+  for (const BuiltInScene& scene : listed) known += (known.empty() ? "" : ", ") + std::string(scene.name);
+  return fail(ErrorCode::not_found, "scene",
+              "'" + std::string(name) + "' is not a built-in scene; did you mean '" + std::string(nearest->name) +
+                  "'? Known are " + known);
+}
+
+}  // namespace
+
+std::span<const BuiltInScene> built_in_scenes() noexcept {
+  return listed;
+}
+
+hal::Result<hal::Image> render_built_in(std::string_view name, int rows, int cols, std::uint64_t seed) {
+  const auto found =
+      std::find_if(generators.begin(), generators.end(), [&](const Generator& g) { return g.scene.name == name; });
+  if (found == generators.end()) return unknown(name);
+  if (rows < 1 || cols < 1 || rows > 8192 || cols > 8192) {
+    return fail(
+        ErrorCode::out_of_range, "scene '" + std::string(name) + "'",
+        "asked for " + std::to_string(rows) + "x" + std::to_string(cols) + " pixels, expected 1 to 8192 each way");
+  }
+  return found->render(rows, cols, seed);
+}
+
+}  // namespace compueye::sim

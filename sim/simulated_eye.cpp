@@ -1,0 +1,179 @@
+#include "sim/simulated_eye.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string_view>
+#include <utility>
+
+namespace compueye::sim {
+namespace {
+
+using hal::DropReason;
+using hal::ErrorCode;
+using hal::fail;
+using hal::Result;
+
+Result<void> check(bool ok, const std::string& serial, std::string_view field, double value,
+                   std::string_view expected) {
+  if (ok) return {};
+  return fail(ErrorCode::out_of_range, serial,
+              std::string(field) + " is " + std::to_string(value) + ", expected " + std::string(expected));
+}
+
+Result<void> check(const SimulatedEyeSettings& s) {
+  if (s.scenes.empty()) return fail(ErrorCode::usage, s.serial, "there is no scene, expected at least one");
+  return check(s.frames_per_scene >= 1, s.serial, "frames_per_scene", s.frames_per_scene, "1 or more")
+      .and_then([&] { return check(s.fifo_frames >= 1, s.serial, "fifo_frames", s.fifo_frames, "1 or more"); })
+      .and_then([&] {
+        return check(s.frame_rate_hz == 0.0 || (s.frame_rate_hz >= 1e-3 && s.frame_rate_hz <= 1e6), s.serial,
+                     "frame_rate_hz", s.frame_rate_hz, "0 (unpaced) or 0.001 to 1000000");
+      })
+      .and_then([&] { return s.faults.validate(s.optics.eye.ommatidia()); });
+}
+
+}  // namespace
+
+Result<std::unique_ptr<SimulatedEye>> SimulatedEye::create(SimulatedEyeSettings settings, hal::Clock& clock) {
+  if (settings.optics.profile.shells.empty()) {
+    settings.optics.profile = AngularProfile::flat_top(settings.optics.eye.acceptance_rad);
+  }
+  if (auto ok = settings.optics.validate(); !ok) return tl::unexpected(ok.error());
+  if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
+  Result<Sensor> sensor = Sensor::create(settings.sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  for (const std::string& step : settings.steps_off) {
+    if (auto ok = sensor->enable(step, false); !ok) return tl::unexpected(ok.error());
+  }
+  std::vector<std::vector<double>> signals;
+  for (const Scene& scene : settings.scenes) {
+    Result<std::vector<double>> exposed = settings.optics.expose(scene);
+    if (!exposed) return tl::unexpected(exposed.error());
+    signals.push_back(*std::move(exposed));
+  }
+  std::sort(settings.faults.lost_frames.begin(), settings.faults.lost_frames.end());
+  return std::unique_ptr<SimulatedEye>(
+      new SimulatedEye(std::move(settings), *std::move(sensor), std::move(signals), clock));
+}
+
+SimulatedEye::SimulatedEye(SimulatedEyeSettings settings, Sensor sensor, std::vector<std::vector<double>> signals,
+                           hal::Clock& clock)
+    : settings_(std::move(settings)),
+      sensor_(std::move(sensor)),
+      signals_(std::move(signals)),
+      clock_(clock),
+      power_on_ns_(clock.now_ns()) {
+  const int channels = settings_.optics.eye.ommatidia();
+  const auto m = static_cast<std::size_t>(channels);
+  description_ = {"sim",
+                  settings_.serial,
+                  "simulated",
+                  channels,
+                  settings_.sensor.bits,
+                  settings_.frame_rate_hz,
+                  std::vector<std::int32_t>(m),
+                  std::vector<std::int32_t>(m, 0)};
+  std::iota(description_.ommatidium_of_channel.begin(), description_.ommatidium_of_channel.end(), 0);
+  levels_lsb_.resize(m);
+  codes_.resize(m);
+  valid_.resize(m);
+}
+
+std::span<const double> SimulatedEye::noise_free(std::size_t scene_index) const noexcept {
+  return signals_[scene_index];
+}
+
+std::size_t SimulatedEye::scene_of_frame(std::uint64_t frame) const noexcept {
+  return static_cast<std::size_t>(frame / static_cast<std::uint64_t>(settings_.frames_per_scene) % signals_.size());
+}
+
+std::int64_t SimulatedEye::exposure_start_ns(std::uint64_t frame) const noexcept {
+  return started_ns_ +
+         static_cast<std::int64_t>(std::llround(static_cast<double>(frame) * 1e9 / settings_.frame_rate_hz));
+}
+
+// Corrected after the division, so that a frame is finished exactly when the clock shows the end of its exposure.
+std::uint64_t SimulatedEye::finished_frames(std::int64_t now_ns) const noexcept {
+  const double elapsed = static_cast<double>(std::max<std::int64_t>(now_ns - started_ns_, 0));
+  auto finished = static_cast<std::uint64_t>(elapsed * settings_.frame_rate_hz / 1e9);
+  while (finished > 0 && exposure_start_ns(finished) > now_ns) --finished;
+  while (exposure_start_ns(finished + 1) <= now_ns) ++finished;
+  return std::min(finished, settings_.frame_limit.value_or(std::numeric_limits<std::uint64_t>::max()));
+}
+
+bool SimulatedEye::lost_on_the_way(std::uint64_t frame) const noexcept {
+  const auto& lost = settings_.faults.lost_frames;
+  return std::binary_search(lost.begin(), lost.end(), frame);
+}
+
+void SimulatedEye::overwrite_oldest(std::uint64_t finished) noexcept {
+  const auto kept = static_cast<std::uint64_t>(settings_.fifo_frames);
+  if (finished <= next_ + kept) return;
+  const std::uint64_t overwritten = finished - kept - next_;
+  next_ += overwritten;
+  account_.produced += overwritten;
+  account_.drops(DropReason::device_overrun) += overwritten;
+  overrun_pending_ = true;
+}
+
+Result<void> SimulatedEye::do_start() {
+  started_ns_ = clock_.now_ns();
+  next_ = 0;
+  overrun_pending_ = false;
+  account_ = {};
+  return {};
+}
+
+Result<hal::SampleBlock> SimulatedEye::do_read(std::int64_t deadline_ns) {
+  for (;;) {
+    const std::int64_t now_ns = clock_.now_ns();
+    if (paced()) overwrite_oldest(finished_frames(now_ns));
+    if (settings_.frame_limit && next_ >= *settings_.frame_limit) return hal::stream_ended();
+    if (paced() && exposure_start_ns(next_ + 1) > now_ns) {
+      if (now_ns >= deadline_ns) return hal::timed_out();
+      clock_.sleep_until_ns(std::min(exposure_start_ns(next_ + 1), deadline_ns));
+      continue;
+    }
+    if (!lost_on_the_way(next_)) return deliver(now_ns);
+    ++account_.produced;
+    ++account_.drops(DropReason::transport_gap);
+    ++next_;
+  }
+}
+
+Result<hal::SampleBlock> SimulatedEye::deliver(std::int64_t now_ns) {
+  const std::uint64_t frame = next_++;
+  hal::SampleBlock block;
+  block.flags.saturated = sensor_.digitise(signals_[scene_of_frame(frame)], settings_.seed, frame, levels_lsb_, codes_);
+  std::fill(valid_.begin(), valid_.end(), std::uint8_t{1});
+  for (const InvalidChannel& fault : settings_.faults.invalid_channels) {
+    if (frame < fault.from_frame) continue;
+    const auto channel = static_cast<std::size_t>(fault.channel);
+    valid_[channel] = 0;
+    codes_[channel] = settings_.sensor.largest_code() / 2;
+  }
+  block.codes = codes_;
+  block.valid = valid_;
+  block.bits = settings_.sensor.bits;
+  block.frame = frame;
+  block.t_ns = (paced() ? exposure_start_ns(frame) : now_ns) - power_on_ns_;
+  if (!paced()) block.t_ns = std::max(block.t_ns, last_t_ns_ + 1);
+  last_t_ns_ = block.t_ns;
+  block.flags.overrun = std::exchange(overrun_pending_, false);
+  ++account_.produced;
+  ++account_.delivered;
+  return block;
+}
+
+void SimulatedEye::do_stop() noexcept {
+  if (!paced()) return;
+  const std::uint64_t finished = finished_frames(clock_.now_ns());
+  overwrite_oldest(finished);
+  for (; next_ < finished; ++next_) {
+    ++account_.produced;
+    ++account_.drops(lost_on_the_way(next_) ? DropReason::transport_gap : DropReason::stopped);
+  }
+}
+
+}  // namespace compueye::sim

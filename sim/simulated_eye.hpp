@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hal/clock.hpp"
+#include "hal/eye_geometry.hpp"
+#include "hal/sample_source.hpp"
+#include "sim/device_faults.hpp"
+#include "sim/optics.hpp"
+#include "sim/scene.hpp"
+#include "sim/sensor.hpp"
+
+namespace compueye::sim {
+
+struct SimulatedEyeSettings {
+  Optics optics;                             ///< an empty profile becomes the flat top of eye.acceptance_rad
+  std::vector<Scene> scenes;                 ///< at least one; shown in turn, over and over
+  int frames_per_scene = 1;                  ///< >= 1
+  SensorSettings sensor;                     ///< bits, full scale, noise
+  std::vector<std::string> steps_off;        ///< names of sensor steps to switch off
+  double frame_rate_hz = 0.0;                ///< 0: unpaced, a frame whenever one is read; else up to 1e6
+  std::uint64_t seed = 0;                    ///< of every random draw
+  int fifo_frames = 4;                       ///< frames the device keeps for a late reader, >= 1
+  std::string serial = "sim-0";              ///< names the device and the place of its errors
+  std::optional<std::uint64_t> frame_limit;  ///< frames the device makes after a start(), then end_of_stream
+  DeviceFaults faults;
+};
+
+/// A compound eye without hardware, behind the interface of the real ones.
+///
+/// The device clock is the Clock's time since create(). After start() at device time t0, frame f is exposed from
+/// t0 + f/rate to t0 + (f+1)/rate; SampleBlock::t_ns is the beginning and the frame can be read from the end on. A full
+/// FIFO loses its oldest frame: the reader sees the frame number jump, the overrun flag and a device_overrun count.
+/// Unpaced, a frame is exposed at the moment of the read and none is lost; t_ns then still grows by at least 1 ns.
+///
+/// Samples depend on settings and frame number only: not on pacing, on when they are read or on what was lost before.
+/// account().produced counts the frames whose fate is settled; those still in the FIFO are settled by the next read()
+/// or by stop(), which counts them as `stopped`. config_id is 0, the channels are the ommatidia in order.
+class SimulatedEye final : public hal::SampleSource {
+ public:
+  /// Integrates every scene through the optics, so it may take seconds. `clock` must outlive the eye. Errors: those of
+  /// the settings' parts; usage (no scene), out_of_range, not_found (a step to switch off).
+  [[nodiscard]] static hal::Result<std::unique_ptr<SimulatedEye>> create(SimulatedEyeSettings settings,
+                                                                         hal::Clock& clock);
+
+  /// The M noise-free signals of scene `scene_index` (0 .. scenes - 1), in fully seen pixels at white.
+  [[nodiscard]] std::span<const double> noise_free(std::size_t scene_index) const noexcept;
+  /// Which scene is shown in frame `frame`.
+  [[nodiscard]] std::size_t scene_of_frame(std::uint64_t frame) const noexcept;
+  [[nodiscard]] const SimulatedEyeSettings& settings() const noexcept { return settings_; }
+
+ private:
+  SimulatedEye(SimulatedEyeSettings settings, Sensor sensor, std::vector<std::vector<double>> signals,
+               hal::Clock& clock);
+
+  const hal::SourceDescription& do_describe() const noexcept override { return description_; }
+  hal::Result<void> do_start() override;
+  hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override;
+  void do_stop() noexcept override;
+  hal::FrameAccount do_account() const noexcept override { return account_; }
+
+  [[nodiscard]] bool paced() const noexcept { return settings_.frame_rate_hz > 0.0; }
+  [[nodiscard]] std::int64_t exposure_start_ns(std::uint64_t frame) const noexcept;
+  [[nodiscard]] std::uint64_t finished_frames(std::int64_t now_ns) const noexcept;
+  [[nodiscard]] bool lost_on_the_way(std::uint64_t frame) const noexcept;
+  void overwrite_oldest(std::uint64_t finished) noexcept;
+  hal::Result<hal::SampleBlock> deliver(std::int64_t now_ns);
+
+  SimulatedEyeSettings settings_;
+  Sensor sensor_;
+  std::vector<std::vector<double>> signals_;  // one a scene
+  hal::Clock& clock_;
+  hal::SourceDescription description_;
+  std::int64_t power_on_ns_ = 0;  // Clock time of device time 0
+
+  std::int64_t started_ns_ = 0;  // Clock time of start()
+  std::int64_t last_t_ns_ = -1;  // device time of the last block, over all streams
+  std::uint64_t next_ = 0;       // oldest frame whose fate is open
+  bool overrun_pending_ = false;
+  hal::FrameAccount account_;
+  std::vector<double> levels_lsb_;
+  std::vector<std::int32_t> codes_;
+  std::vector<std::uint8_t> valid_;
+};
+
+}  // namespace compueye::sim
