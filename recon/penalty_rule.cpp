@@ -1,12 +1,20 @@
 #include "recon/penalty_rule.hpp"
 
+#include <numeric>
+
 namespace compueye::recon {
+namespace {
+
+constexpr double share_of_column_norm = 0.06;
+
+}  // namespace
 
 double resolve_rho(const Response& response, const Objective& objective, const Plan& plan) {
   if (plan.solver == SolverKind::tikhonov) return objective.lambda;
   if (plan.rho > 0.0) return plan.rho;
-  (void)response;
-  return 4.0 * (objective.lambda > 0 ? objective.lambda : 1e-3);
+  const auto values = response.values();
+  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  return share_of_column_norm * squares / response.cols();
 }
 
 }  // namespace compueye::recon

@@ -65,9 +65,6 @@ hal::Result<void> check_plan(const Plan& plan) {
   }
   if (!std::isfinite(plan.rho) || plan.rho < 0.0)
     return out_of_range("rho", plan.rho, "more than 0, or 0 for the rule");
-  if (!std::isfinite(plan.signal_scale) || !(plan.signal_scale > 0.0)) {
-    return out_of_range("signal scale", plan.signal_scale, "a finite number above 0");
-  }
   return {};
 }
 

@@ -29,11 +29,10 @@ struct Objective {
 struct Plan {
   SolverKind solver = SolverKind::admm;
   Precision precision = Precision::f32;
-  int iterations = 100;       ///< exactly this many per frame, 1 .. 1e6
-  double rho = 0.0;           ///< ADMM penalty; 0 = by rule from lambda and signal_scale
-  double relaxation = 1.7;    ///< 0 < relaxation < 2
-  double signal_scale = 1.0;  ///< expected size of x, for the rule of rho: 1 when x is 0..1 of white
-  int max_reweighted = -1;    ///< channels that may have a weight other than one in a frame; -1 = a tenth of M
+  int iterations = 100;     ///< exactly this many per frame, 1 .. 1e6
+  double rho = 0.0;         ///< ADMM penalty; 0 = by rule (recon/penalty_rule.hpp)
+  double relaxation = 1.7;  ///< 0 < relaxation < 2
+  int max_reweighted = -1;  ///< channels that may have a weight other than one in a frame; -1 = a tenth of M
 };
 
 /// A problem that is set up: operator tables, basis tables and factor. Immutable after create(); solve() may run from

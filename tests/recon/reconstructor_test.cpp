@@ -69,7 +69,10 @@ TEST_CASE("a stored factor is used when it fits and refused when stale") {
   const std::vector<float> y(20, 1.0F);
   const auto again = Reconstructor::create(a, 6, 8, dct_box(0.1), {}, first.factor()).value();
   CHECK(solve_frame(first, y).x == solve_frame(again, y).x);
-  const auto stale = Reconstructor::create(a, 6, 8, dct_box(0.2), {}, first.factor());
+  CHECK(Reconstructor::create(a, 6, 8, dct_box(0.2), {}, first.factor()).has_value());  // another lambda, the same rho
+  recon::Plan other;
+  other.rho = first.plan().rho * 2.0;
+  const auto stale = Reconstructor::create(a, 6, 8, dct_box(0.1), other, first.factor());
   REQUIRE_FALSE(stale.has_value());
   CHECK(stale.error().code == ErrorCode::stale);
 }
