@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace compueye::firmware {
+
+/// `text` on one line and harmless to a terminal: control characters become \n, \r, \t or \xHH. UTF-8 passes through.
+[[nodiscard]] std::string visible_text(std::string_view text);
+
+/// The same, cut after `most` characters (with "..." instead of the rest): for quoting what a file holds.
+[[nodiscard]] std::string excerpt(std::string_view text, std::size_t most = 60);
+
+/// Columns a terminal needs for `text`: its UTF-8 code points (wide East Asian characters are not told apart).
+[[nodiscard]] std::size_t display_width(std::string_view text) noexcept;
+
+}  // namespace compueye::firmware

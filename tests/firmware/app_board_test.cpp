@@ -1,0 +1,278 @@
+#include "firmware/app/board/board.hpp"
+
+#include <doctest/doctest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <string>
+
+#include "firmware/app/board/board_schema.hpp"
+#include "firmware/app/board/reconstruction_names.hpp"
+#include "firmware/app/board/schema_check.hpp"
+#include "tests/firmware/app_board_text.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double deg = std::numbers::pi / 180.0;
+const fs::path boards = fs::path(COMPUEYE_SOURCE_DIR) / "boards";
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// A folder that goes away with the test.
+struct ScratchFolder {
+  fs::path path;
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "compueye-board-XXXXXX").string();
+    REQUIRE(mkdtemp(name.data()) != nullptr);
+    path = name;
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  void add_board(const std::string& name, const std::string& text = test::good_board) const {
+    fs::create_directories(path / name);
+    std::ofstream(path / name / "board.toml") << text;
+  }
+};
+
+bool holds(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a good board is read in natural units, with every default") {
+  const auto board = parse_board(test::good_board, "board.toml");
+  REQUIRE_MESSAGE(board.has_value(), board.error().text());
+  CHECK(board->name == "test-eye");
+  CHECK(board->description.empty());
+  CHECK(board->eye.lattice == hal::Lattice::fisheye);
+  CHECK(board->eye.ommatidia() == 80);
+  CHECK(board->eye.interommatidial_rad == doctest::Approx(1.5 * deg).epsilon(1e-15));
+  CHECK(board->eye.acceptance_rad == doctest::Approx(8.0 * deg).epsilon(1e-15));
+  CHECK(board->eye.radius_mm == 6.9216);
+  CHECK(board->eye.lens_height_mm == 1.35);
+  CHECK(board->object.rows == 16);
+  CHECK(board->object.cols == 20);
+  CHECK(board->object.width_mm == 8.5);
+  CHECK(board->object.distance_mm == 30.0);
+  CHECK(board->sensor.lsb() == 128.0 / 65536.0);
+  CHECK(board->sensor.dark_level_lsb == 0.0);
+  CHECK(board->sensor.dead == std::vector<int>{3, 7});
+  CHECK(board->sensor.saturation_share == 0.98);
+  CHECK(board->sensor.max_missing_share == 0.05);
+  CHECK(board->source.kind == "sim");
+  CHECK(board->source.serial == "SIM0001");
+  CHECK(board->source.fifo_frames == 4);
+  CHECK(board->reconstruction.solver == recon::SolverKind::admm);
+  CHECK(board->reconstruction.basis == recon::BasisKind::dct);
+  CHECK(board->reconstruction.constraint == recon::ConstraintKind::box);
+  CHECK(board->reconstruction.box_lo == 0.0);
+  CHECK(board->reconstruction.box_hi == 1.5);
+  CHECK_FALSE(board->reconstruction.lambda.has_value());
+  CHECK_FALSE(board->reconstruction.rho.has_value());
+  CHECK(board->scene.name == "fig2");
+}
+
+TEST_CASE("the noise follows from read noise and rounding unless it is given") {
+  const auto board = parse_board(test::good_board, "board.toml");
+  REQUIRE(board.has_value());
+  CHECK(board->noise_sigma() == doctest::Approx(128.0 / 65536.0 * std::sqrt(13.0 / 12.0)));
+  const auto given =
+      parse_board(test::replaced(test::good_board, "constraint", "sigma = 0.25\nconstraint"), "board.toml");
+  REQUIRE(given.has_value());
+  CHECK(given->noise_sigma() == 0.25);
+}
+
+TEST_CASE("a board knows where each key stands") {
+  const auto board = parse_board(test::good_board, "b/board.toml");
+  REQUIRE(board.has_value());
+  CHECK(board->place("scene", "default") == "b/board.toml:26");
+  CHECK(board->place("eye", "lattice") == "b/board.toml:3");
+  CHECK(board->place("nowhere", "at_all") == "b/board.toml");
+  CHECK(board->states("eye", "rows"));
+  CHECK_FALSE(board->states("eye", "lattice"));
+}
+
+TEST_CASE("sections may come as dotted keys, inline tables and with a byte order mark") {
+  const std::string dotted = test::replaced(test::good_board, "[source]\nkind = \"sim\"\nframe_rate_hz = 200\n", "");
+  REQUIRE_FALSE(dotted.empty());
+  for (const std::string& text : {"source.kind = \"sim\"\nsource.frame_rate_hz = 20\n" + dotted,
+                                  "source = {kind = \"sim\", frame_rate_hz = 20}\n" + dotted,
+                                  "\xef\xbb\xbfsource = {kind = \"sim\", frame_rate_hz = 2_0.0}\r\n" + dotted}) {
+    const auto board = parse_board(text, "board.toml");
+    REQUIRE_MESSAGE(board.has_value(), board.error().text());
+    CHECK(board->source.frame_rate_hz == 20.0);
+  }
+}
+
+TEST_CASE("every lattice, solver, basis and constraint can be named") {
+  for (const std::string_view lattice : find_key("eye", "lattice")->choices) {
+    CHECK(hal::lattice_from_name(lattice).has_value());
+  }
+  CHECK(find_key("reconstruction", "solver")->choices.size() == solver_names().size());
+  for (const auto& named : solver_names()) CHECK(name(named.kind) == named.name);
+  for (const auto& named : basis_names()) CHECK(name(named.kind) == named.name);
+  for (const auto& named : constraint_names()) CHECK(name(named.kind) == named.name);
+
+  const std::string plane =
+      test::replaced(test::good_board, "interommatidial_angle_deg = 1.5", "lattice = \"plane\"\npitch_mm = 0.2");
+  const auto flat = parse_board(plane, "board.toml");
+  REQUIRE_MESSAGE(flat.has_value(), flat.error().text());
+  CHECK(flat->eye.lattice == hal::Lattice::plane);
+  CHECK(flat->eye.pitch_mm == 0.2);
+
+  const auto linear =
+      parse_board(test::replaced(test::good_board, "constraint = \"box\"\nbox = [0, 1.5]",
+                                 "solver = \"tikhonov\"\nbasis = \"identity\"\nconstraint = \"none\"\nlambda = 0"),
+                  "board.toml");
+  REQUIRE_MESSAGE(linear.has_value(), linear.error().text());
+  CHECK(linear->reconstruction.solver == recon::SolverKind::tikhonov);
+  CHECK(linear->reconstruction.basis == recon::BasisKind::identity);
+  CHECK(linear->reconstruction.constraint == recon::ConstraintKind::none);
+  CHECK(linear->reconstruction.lambda == 0.0);
+}
+
+TEST_CASE("every default in the key table is itself a good value") {
+  for (const KeySpec& spec : board_schema()) {
+    CAPTURE(std::string(spec.section) + "." + std::string(spec.name));
+    CHECK_FALSE((spec.required && spec.fallback.has_value()));
+    CHECK((spec.store != nullptr));
+    CHECK(find_key(spec.section, spec.name) == &spec);
+    if (spec.fallback) CHECK(check_value(spec, *spec.fallback).has_value());
+  }
+}
+
+TEST_CASE("the reference documents every key as the loader knows it") {
+  const std::string reference = text_of(fs::path(COMPUEYE_SOURCE_DIR) / "docs" / "board-file.md");
+  REQUIRE_FALSE(reference.empty());
+  for (const SectionSpec& section : board_sections()) {
+    CAPTURE(section.name);
+    CHECK(holds(reference, "## [" + std::string(section.name) + "]\n" + std::string(section.meaning) + "\n"));
+    const std::string table = reference_table(section.name);
+    CHECK_MESSAGE(holds(reference + "\n", table), "docs/board-file.md should hold:\n" << table);
+  }
+}
+
+TEST_CASE("the boards that come with the project load and are what they say") {
+  struct Case {
+    const char* name;
+    int side;
+    double angle_deg, acceptance_deg, sigma;
+  };
+  for (const Case& c :
+       {Case{"sim-8x8", 8, 1.5, 8.0, 128.0 / 65536.0 * std::sqrt(13.0 / 12.0)},
+        Case{"sim-80x80", 80, 2.25, 60.0, std::sqrt(0.1)}, Case{"sim-120x120", 120, 1.5, 60.0, std::sqrt(0.1)}}) {
+    CAPTURE(c.name);
+    const auto board = load_board(boards / c.name);
+    REQUIRE_MESSAGE(board.has_value(), board.error().text());
+    CHECK(board->name == c.name);
+    CHECK(board->folder == boards / c.name);
+    CHECK(board->file == (boards / c.name / "board.toml").string());
+    CHECK(board->eye.rows == c.side);
+    CHECK(board->eye.columns == c.side);
+    CHECK(board->eye.interommatidial_rad == doctest::Approx(c.angle_deg * deg));
+    CHECK(board->eye.acceptance_rad == doctest::Approx(c.acceptance_deg * deg));
+    // The read noise is given to three digits, and rounding adds a little.
+    CHECK(board->noise_sigma() == doctest::Approx(c.sigma).epsilon(3e-3));
+    CHECK(board->reconstruction.constraint == recon::ConstraintKind::box);
+    CHECK(fs::exists(boards / c.name / "README.md"));
+    const auto same = load_board(boards / c.name / "board.toml");
+    REQUIRE(same.has_value());
+    CHECK(same->folder == board->folder);
+    CHECK(load_board((boards / c.name).string() + "/").has_value());
+  }
+}
+
+TEST_CASE("a board that is not there is answered with those that are") {
+  const auto near = load_board(boards / "sim-8x9");
+  REQUIRE_FALSE(near.has_value());
+  CHECK(near.error().code == hal::ErrorCode::not_found);
+  CHECK(near.error().place == (boards / "sim-8x9").string());
+  CHECK(holds(near.error().sentence, "did you mean '" + (boards / "sim-8x8").string() + "'?"));
+
+  const auto slash = load_board((boards / "sim-8x9").string() + "/");
+  REQUIRE_FALSE(slash.has_value());
+  CHECK(holds(slash.error().sentence, "sim-8x8'?"));
+  const auto file = load_board(boards / "sim-8x9" / "board.toml");
+  REQUIRE_FALSE(file.has_value());
+  CHECK(holds(file.error().sentence, "sim-8x8'?"));
+
+  const auto far = load_board(boards / "something-else-entirely");
+  REQUIRE_FALSE(far.has_value());
+  CHECK(holds(far.error().sentence, "are sim-120x120, sim-80x80, sim-8x8"));
+
+  const auto above = load_board(boards);
+  REQUIRE_FALSE(above.has_value());
+  CHECK(above.error().place == boards.string());
+  CHECK(holds(above.error().sentence, "has no board.toml; it holds the boards sim-120x120"));
+
+  const ScratchFolder scratch;
+  fs::create_directories(scratch.path / "empty");
+  for (const char* name : {"nothing", "empty", "no/such/parents"}) {
+    CAPTURE(name);
+    const auto none = load_board(scratch.path / name);
+    REQUIRE_FALSE(none.has_value());
+    CHECK(none.error().code == hal::ErrorCode::not_found);
+    CHECK(holds(none.error().place, name));
+  }
+}
+
+TEST_CASE("what cannot be a board file is refused by name") {
+  const ScratchFolder scratch;
+  CHECK(load_board("").error().code == hal::ErrorCode::usage);
+  CHECK(load_board("/dev/null").error().code == hal::ErrorCode::bad_format);
+
+  scratch.add_board("folder-inside");
+  fs::remove(scratch.path / "folder-inside" / "board.toml");
+  fs::create_directories(scratch.path / "folder-inside" / "board.toml");
+  CHECK(load_board(scratch.path / "folder-inside").error().code == hal::ErrorCode::bad_format);
+
+  scratch.add_board("huge", std::string((1U << 20U) + 1U, '#'));
+  const auto huge = load_board(scratch.path / "huge");
+  REQUIRE_FALSE(huge.has_value());
+  CHECK(holds(huge.error().sentence, "1048577 bytes"));
+
+  scratch.add_board("empty", "");
+  const auto empty = load_board(scratch.path / "empty");
+  REQUIRE_FALSE(empty.has_value());
+  CHECK(holds(empty.error().sentence, "section [board] is missing"));
+
+  REQUIRE(mkfifo((scratch.path / "pipe").c_str(), 0600) == 0);
+  CHECK(load_board(scratch.path / "pipe").error().code == hal::ErrorCode::bad_format);
+
+  fs::create_symlink("loop", scratch.path / "loop");
+  CHECK_FALSE(load_board(scratch.path / "loop").has_value());
+
+  scratch.add_board("locked");
+  fs::permissions(scratch.path / "locked" / "board.toml", fs::perms::none);
+  if (geteuid() == 0) {
+    CHECK(load_board(scratch.path / "locked").has_value());
+  } else {
+    CHECK(load_board(scratch.path / "locked").error().code == hal::ErrorCode::io);
+  }
+}
+
+TEST_CASE("an error in a file on disk names its path and line") {
+  const ScratchFolder scratch;
+  scratch.add_board("bad", test::replaced(test::good_board, "rows = 8\n", "rows = 0\n"));
+  const auto bad = load_board(scratch.path / "bad");
+  REQUIRE_FALSE(bad.has_value());
+  CHECK(bad.error().place == (scratch.path / "bad" / "board.toml").string() + ":4");
+}

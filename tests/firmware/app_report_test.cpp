@@ -1,0 +1,210 @@
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/app/report/error_report.hpp"
+#include "firmware/app/report/json_report.hpp"
+#include "firmware/app/report/nearest_name.hpp"
+#include "firmware/app/report/number_text.hpp"
+#include "firmware/app/report/table.hpp"
+#include "firmware/app/report/visible_text.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+std::string written(const hal::Error& error, int expected_exit) {
+  std::FILE* file = std::tmpfile();
+  REQUIRE(file != nullptr);
+  CHECK(print_error(error, file) == expected_exit);
+  std::rewind(file);
+  std::string text;
+  for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) text += static_cast<char>(c);
+  std::fclose(file);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("edit distance counts insertions, deletions, replacements and swaps") {
+  struct Case {
+    std::string_view a, b;
+    std::size_t distance;
+  };
+  for (const Case& c : {Case{"", "", 0}, Case{"", "abc", 3}, Case{"rows", "rows", 0}, Case{"ROWS", "rows", 0},
+                        Case{"rosw", "rows", 1}, Case{"rws", "rows", 1}, Case{"roows", "rows", 1},
+                        Case{"kitten", "sitting", 3}, Case{"acceptence", "acceptance", 1}}) {
+    CAPTURE(c.a);
+    CAPTURE(c.b);
+    CHECK(edit_distance(c.a, c.b) == c.distance);
+    CHECK(edit_distance(c.b, c.a) == c.distance);
+  }
+}
+
+TEST_CASE("edit distance of enormous names stays bounded") {
+  const std::string huge(100000, 'x');
+  CHECK(edit_distance(huge, "rows") == 64);
+  CHECK(edit_distance(huge, huge) == 0);
+}
+
+TEST_CASE("the nearest name is suggested, and none when none is near") {
+  const std::array<std::string_view, 4> known{"rows", "columns", "radius_mm", "pitch_mm"};
+  CHECK(nearest_name("row", known) == "rows");
+  CHECK(nearest_name("colums", known) == "columns");
+  CHECK(nearest_name("Radius_mm", known) == "radius_mm");
+  CHECK_FALSE(nearest_name("temperature", known).has_value());
+  CHECK_FALSE(nearest_name("", known).has_value());
+  CHECK_FALSE(nearest_name("rows", {}).has_value());
+  const std::array<std::string_view, 1> letter{"a"};
+  CHECK_FALSE(nearest_name("b", letter).has_value());
+  CHECK(suggestion("pich_mm", known) == "; did you mean 'pitch_mm'?");
+  CHECK(suggestion("zzz", known) == "; known names are rows, columns, radius_mm, pitch_mm");
+  CHECK(suggestion("zzz", letter) == "; the only known name is a");
+  CHECK(suggestion("zzz", {}).empty());
+  CHECK(suggestion("zzzzzz", std::vector<std::string_view>(21, "a")).ends_with(", a, ..."));
+}
+
+TEST_CASE("an error is one line on stderr and an exit code") {
+  using hal::ErrorCode;
+  CHECK(written({ErrorCode::usage, "--frames", "is -1, expected 1 or more"}, 2) ==
+        "compueye: --frames: is -1, expected 1 or more\n");
+  CHECK(written({ErrorCode::not_found, "a\nb.npy", "tab\t, escape \x1b[2J and \x7f"}, 1) ==
+        "compueye: a\\nb.npy: tab\\t, escape \\x1b[2J and \\x7f\n");
+  CHECK(written({ErrorCode::timeout, {}, {}}, 1) == "compueye: " + std::string(hal::name(ErrorCode::timeout)) + "\n");
+  for (int code = 0; code <= static_cast<int>(ErrorCode::interrupted); ++code) {
+    const hal::Error error{static_cast<ErrorCode>(code), "x", "y"};
+    CHECK(exit_code(error) == (error.code == ErrorCode::usage ? 2 : 1));
+  }
+}
+
+TEST_CASE("quoted text is short, visible and never cut inside a character") {
+  CHECK(excerpt("short", 10) == "short");
+  CHECK(excerpt("abcdef", 3) == "abc...");
+  CHECK(excerpt("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xa4\xc3\xb6...");
+  CHECK(excerpt("", 0).empty());
+  CHECK(visible_text(std::string_view("\0\r", 2)) == "\\x00\\r");
+  CHECK(display_width("2 \xc2\xb5m") == 4);
+}
+
+TEST_CASE("numbers for people") {
+  CHECK(fixed(3.14159, 2) == "3.14");
+  CHECK(fixed(-0.001, 2) == "0.00");
+  CHECK(fixed(-1.5, 0) == "-2");
+  CHECK(fixed(not_a_number, 2) == "n/a");
+  CHECK(fixed(infinite, 2) == "inf");
+  CHECK(fixed(-infinite, 2) == "-inf");
+  CHECK(fixed(1.0, -5) == "1");
+  CHECK(significant(0.10712, 3) == "0.107");
+  CHECK(significant(1.2e-21, 2) == "1.2e-21");
+  CHECK(significant(123.456, 2) == "123");
+  CHECK(significant(0.9996, 3) == "1.00");
+  CHECK(significant(999999.9, 3) == "1.00e+06");
+  CHECK(significant(0.00099999, 3) == "0.00100");
+  CHECK(significant(0.0, 3) == "0");
+  CHECK(significant(-2.5e7, 2) == "-2.5e+07");
+  CHECK(significant(not_a_number, 3) == "n/a");
+  CHECK(grouped(0) == "0");
+  CHECK(grouped(999) == "999");
+  CHECK(grouped(9010124) == "9,010,124");
+  CHECK(grouped(-1000) == "-1,000");
+  CHECK(grouped(std::numeric_limits<std::int64_t>::min()) == "-9,223,372,036,854,775,808");
+  CHECK(duration(0.04) == "0.0 s");
+  CHECK(duration(9.97) == "10 s");
+  CHECK(duration(59.7) == "1 min 00 s");
+  CHECK(duration(185.0) == "3 min 05 s");
+  CHECK(duration(7620.0) == "2 h 07 min");
+  for (const double odd : {not_a_number, infinite, -1.0, 1e300}) CHECK(duration(odd) == "n/a");
+  CHECK(bytes(0) == "0 B");
+  CHECK(bytes(1023) == "1023 B");
+  CHECK(bytes(1536) == "1.50 KiB");
+  CHECK(bytes(std::uint64_t{415} << 20U) == "415 MiB");
+  CHECK(bytes((std::uint64_t{1} << 20U) - 1) == "1.00 MiB");
+  CHECK(bytes(std::numeric_limits<std::uint64_t>::max()) == "16.0 EiB");
+}
+
+TEST_CASE("a table aligns names left and numbers right without trailing blanks") {
+  Table table({{"scene", Align::left}, {"NMSE"}, {"note", Align::left}});
+  table.add({"line-art", "0.107", "best"}).add({"fig2", "1.2e-21"}).add({"\xc3\xa4", "inf", "a\nb", "extra"});
+  CHECK(table.size() == 3);
+  CHECK(table.text() ==
+        "scene        NMSE  note\n"
+        "--------  -------  ----  -----\n"
+        "line-art    0.107  best\n"
+        "fig2      1.2e-21\n"
+        "\xc3\xa4             inf  a\\nb  extra\n");
+}
+
+TEST_CASE("a table without rows or columns is still well formed") {
+  CHECK(Table({{"a"}}).text() == "a\n-\n");
+  CHECK(Table({}).text() == "\n\n");
+  CHECK(Table({}).add({"1", "2"}).text() == "\n-  -\n1  2\n");
+}
+
+TEST_CASE("JSON output is valid whatever the object holds") {
+  Json object;
+  object["nmse"] = not_a_number;
+  object["psnr_db"] = infinite;
+  object["list"] = {1.5, -infinite};
+  object["file"] = "bad \xff utf-8";
+  object["last"] = 1;
+  const std::string text = json_text(object);
+  CHECK(text.ends_with("}\n"));
+  const Json back = Json::parse(text, nullptr, false);
+  REQUIRE_FALSE(back.is_discarded());
+  CHECK(back["nmse"].is_null());
+  CHECK(back["psnr_db"].is_null());
+  CHECK(back["list"][0] == 1.5);
+  CHECK(back["list"][1].is_null());
+  CHECK(back["file"] == "bad \xef\xbf\xbd utf-8");
+  CHECK(back.begin().key() == "nmse");
+  CHECK((--back.end()).key() == "last");
+}
+
+TEST_CASE("an account becomes JSON with every reason") {
+  hal::FrameAccount account;
+  account.produced = 10;
+  account.delivered = 7;
+  account.drops(hal::DropReason::superseded) = 2;
+  Json json = json_of(account);
+  REQUIRE(json.is_object());
+  CHECK(json["produced"] == 10);
+  CHECK(json["dropped"].size() == hal::drop_reason_count);
+  CHECK(json["dropped"][std::string(hal::name(hal::DropReason::superseded))] == 2);
+  CHECK(json["balanced"] == false);
+  account.drops(hal::DropReason::stopped) = 1;
+  CHECK(json_of(account)["balanced"] == true);
+}
+
+TEST_CASE("an error becomes JSON") {
+  const Json json = json_of(hal::Error{hal::ErrorCode::stale, "f.eye", "made from another A"});
+  REQUIRE(json.is_object());
+  CHECK(json["error"]["code"] == hal::name(hal::ErrorCode::stale));
+  CHECK(json["error"]["place"] == "f.eye");
+  CHECK(json["error"]["sentence"] == "made from another A");
+}
+
+TEST_CASE("a report that cannot be written is an error") {
+  std::FILE* full = std::fopen("/dev/full", "w");
+  REQUIRE(full != nullptr);
+  const auto refused = print_text("{}\n", full, "report.json");
+  std::fclose(full);
+  REQUIRE_FALSE(refused.has_value());
+  CHECK(refused.error().code == hal::ErrorCode::no_space);
+  CHECK(refused.error().place == "report.json");
+
+  std::FILE* fine = std::tmpfile();
+  REQUIRE(fine != nullptr);
+  CHECK(print_text("{}\n", fine).has_value());
+  CHECK(std::ftell(fine) == 3);
+  std::fclose(fine);
+}
