@@ -40,6 +40,21 @@ TEST_CASE("a device that leaves its configuration for good ends the run and says
   CHECK(summary.health.config_mismatches == 9);
 }
 
+TEST_CASE("every run takes the configuration of its own first frame") {
+  Rig rig;
+  std::uint32_t config_id = 1;
+  rig.source.script = [&](std::uint64_t) {
+    ScriptedFrame frame;
+    frame.config_id = config_id;
+    return frame;
+  };
+  auto pipeline = Pipeline::create(rig.settings, rig.source, rig.solver, rig.sink, rig.clock);
+  REQUIRE(pipeline.has_value());
+  for (config_id = 1; config_id <= 3; ++config_id) {
+    CHECK(rig.checked(pipeline->run(rig.stop)).frames.delivered == 10);
+  }
+}
+
 TEST_CASE("an expected configuration is demanded from the first frame on") {
   Rig rig;
   rig.settings.correction.expected_config_id = 2;
