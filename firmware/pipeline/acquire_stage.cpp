@@ -1,0 +1,68 @@
+#include "firmware/pipeline/acquire_stage.hpp"
+
+#include <string>
+#include <utility>
+
+#include "firmware/pipeline/stage_account.hpp"
+
+namespace compueye::firmware {
+
+void AcquireStage::run() noexcept {
+  while (!control_.stop_seen()) {
+    RawSlot* const slot = out_.claim();
+    if (slot == nullptr) break;
+    const std::int64_t begin_ns = clock_.now_ns();
+    hal::Result<hal::SampleBlock> block = source_.read(begin_ns + settings_.read_timeout_ns);
+    if (block) {
+      take(*block, *slot);
+    } else if (!goes_on_after(block.error(), clock_.now_ns() - begin_ns)) {
+      break;
+    }
+  }
+  out_.close();
+}
+
+void AcquireStage::take(const hal::SampleBlock& block, RawSlot& slot) noexcept {
+  ++own_.produced;
+  silent_ns_ = 0;
+  if (block.flags.overrun) ++overrun_flags_;
+  if (block.flags.dark) ++dark_frames_;
+  if (!block.flags.time_ok) ++untrusted_times_;
+  const std::int64_t received_ns = clock_.now_ns();
+  slot.assign(block, {.frame = block.frame,
+                      .t_ns = block.t_ns,
+                      .exposed_at_ns = device_time_.exposure_start_ns(block, received_ns),
+                      .received_at_ns = received_ns});
+  if (out_.push()) {
+    ++pushed_;
+  } else {
+    ++own_.drops(hal::DropReason::stopped);
+  }
+}
+
+bool AcquireStage::goes_on_after(hal::Error& error, std::int64_t waited_ns) noexcept {
+  switch (error.code) {
+    case hal::ErrorCode::timeout:
+      ++read_timeouts_;
+      silent_ns_ += waited_ns;
+      if (settings_.silence_limit_ns == 0 || silent_ns_ < settings_.silence_limit_ns) return true;
+      control_.end_input({hal::ErrorCode::timeout, source_.describe().serial,
+                          "no frame came for " + std::to_string(silent_ns_ / 1'000'000) +
+                              " ms, the limit of silence; is the eye powered and its frame clock running?"});
+      return false;
+    case hal::ErrorCode::end_of_stream:
+      return false;
+    case hal::ErrorCode::interrupted:
+      control_.end_now(Ending::stop_requested);
+      return false;
+    default:
+      control_.end_input(std::move(error));
+      return false;
+  }
+}
+
+hal::FrameAccount AcquireStage::account() const noexcept {
+  return with_queue(own_, pushed_, out_);
+}
+
+}  // namespace compueye::firmware

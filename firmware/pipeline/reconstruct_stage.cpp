@@ -1,0 +1,47 @@
+#include "firmware/pipeline/reconstruct_stage.hpp"
+
+#include "firmware/pipeline/stage_account.hpp"
+
+namespace compueye::firmware {
+
+void ReconstructStage::run() noexcept {
+  while (!control_.stop_seen()) {
+    PictureSlot* const picture = out_.claim();
+    if (picture == nullptr) break;
+    CorrectedSlot* const corrected = in_.pop();
+    if (corrected == nullptr) break;
+    take(*corrected, *picture);
+  }
+  in_.abort();
+  out_.close();
+}
+
+void ReconstructStage::take(CorrectedSlot& corrected, PictureSlot& picture) noexcept {
+  ++own_.produced;
+  picture.stamp = corrected.stamp;
+  // Swapped, not copied: the observer wants to see the samples beside the picture.
+  picture.y.swap(corrected.y);
+  picture.weights.swap(corrected.weights);
+
+  const std::int64_t begin_ns = clock_.now_ns();
+  picture.info = solver_.solve(picture.y, picture.weights, picture.pixels);
+  picture.solve_ns = clock_.now_ns() - begin_ns;
+  times_.add(picture.solve_ns);
+
+  if (picture.info.health == recon::Health::invalid) {
+    ++own_.drops(hal::DropReason::solver_invalid);
+    return;
+  }
+  ++(picture.info.health == recon::Health::converged ? converged_ : budget_used_);
+  if (out_.push()) {
+    ++pushed_;
+  } else {
+    ++own_.drops(hal::DropReason::stopped);
+  }
+}
+
+hal::FrameAccount ReconstructStage::account() const noexcept {
+  return with_queue(own_, pushed_, out_);
+}
+
+}  // namespace compueye::firmware

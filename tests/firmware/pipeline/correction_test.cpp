@@ -1,0 +1,223 @@
+#include "firmware/pipeline/correction.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace compueye::firmware;
+using compueye::hal::DropReason;
+using compueye::hal::ErrorCode;
+using compueye::hal::SampleBlock;
+using compueye::hal::SourceDescription;
+
+namespace {
+
+SourceDescription eye(int channels, int bits) {
+  SourceDescription d;
+  d.backend = "test";
+  d.serial = "eye-1";
+  d.channels = channels;
+  d.bits = bits;
+  for (int c = 0; c < channels; ++c) d.ommatidium_of_channel.push_back(c);
+  d.sample_offset_ns.assign(static_cast<std::size_t>(channels), 0);
+  return d;
+}
+
+/// A block and the memory it views.
+struct Capture {
+  std::vector<std::int32_t> codes;
+  std::vector<std::uint8_t> valid;
+  int bits = 8;
+  std::uint32_t config_id = 0;
+
+  explicit Capture(std::vector<std::int32_t> c) : codes(std::move(c)), valid(codes.size(), 1) {}
+  [[nodiscard]] SampleBlock block() const {
+    SampleBlock b;
+    b.codes = codes;
+    b.valid = valid;
+    b.bits = bits;
+    b.config_id = config_id;
+    return b;
+  }
+};
+
+struct Corrected {
+  CorrectionReport report;
+  std::vector<float> y;
+  std::vector<float> weights;
+};
+
+Corrected apply(Correction& correction, const Capture& capture) {
+  const auto m = static_cast<std::size_t>(correction.channels());
+  // Filled with nonsense, so that an entry that was left out shows.
+  Corrected out{{}, std::vector<float>(m, -77.0F), std::vector<float>(m, -77.0F)};
+  out.report = correction.apply(capture.block(), out.y, out.weights);
+  return out;
+}
+
+Correction make(const CorrectionSettings& settings, const SourceDescription& source) {
+  auto made = Correction::create(settings, source);
+  REQUIRE_MESSAGE(made.has_value(), made.error().text());
+  return *made;
+}
+
+std::string refusal(const CorrectionSettings& settings, const SourceDescription& source) {
+  const auto made = Correction::create(settings, source);
+  return made ? "accepted" : std::string(name(made.error().code)) + ": " + made.error().text();
+}
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+TEST_CASE("codes become (code - dark) * gain * lsb at the ommatidium of their channel") {
+  SourceDescription source = eye(3, 8);
+  source.ommatidium_of_channel = {2, 0, 1};
+  CorrectionSettings settings;
+  settings.dark = {10.0F, 0.5F, 20.0F};
+  settings.gain = {2.0F, 1.0F, 0.5F};
+  settings.lsb = 0.25;
+  Correction correction = make(settings, source);
+  const Corrected got = apply(correction, Capture({30, 100, 0}));
+  CHECK(got.report.usable);
+  CHECK(got.y == std::vector<float>{99.5F * 0.25F, -20.0F * 0.5F * 0.25F, 20.0F * 2.0F * 0.25F});
+  CHECK(got.weights == std::vector<float>{1.0F, 1.0F, 1.0F});
+  CHECK(got.report.masked == 0);
+}
+
+TEST_CASE("every code of a 24-bit sensor survives the way to float") {
+  CorrectionSettings settings;
+  settings.saturation_share = 1.5;
+  Correction correction = make(settings, eye(4, 24));
+  Capture capture({16'777'215, 16'777'214, 8'388'609, 1});
+  capture.bits = 24;
+  const Corrected got = apply(correction, capture);
+  CHECK(got.y == std::vector<float>{16'777'215.0F, 16'777'214.0F, 8'388'609.0F, 1.0F});
+}
+
+TEST_CASE("invalid, dead, saturated and impossible codes get weight zero and a harmless sample") {
+  CorrectionSettings settings;
+  settings.dead_channels = {1, 1};
+  settings.max_missing_share = 1.0;
+  Correction correction = make(settings, eye(7, 8));
+  CHECK(correction.saturation_code() == 250);  // 0.98 * 255 = 249.9
+  Capture capture({5, 5, 249, 250, 255, -1, 256});
+  capture.valid[0] = 0;
+  const Corrected got = apply(correction, capture);
+  CHECK(got.weights == std::vector<float>{0, 0, 1, 0, 0, 0, 0});
+  CHECK(got.y == std::vector<float>{0, 0, 249, 0, 0, 0, 0});
+  CHECK(got.report.masked == 6);
+  CHECK(got.report.saturated == 2);
+}
+
+TEST_CASE("saturation can be moved and switched off") {
+  CorrectionSettings settings;
+  settings.max_missing_share = 1.0;
+  settings.saturation_share = 1.0;
+  Correction at_full_scale = make(settings, eye(2, 8));
+  CHECK(apply(at_full_scale, Capture({254, 255})).weights == std::vector<float>{1, 0});
+  settings.saturation_share = 1e300;
+  Correction never = make(settings, eye(2, 8));
+  CHECK(apply(never, Capture({254, 255})).weights == std::vector<float>{1, 1});
+}
+
+TEST_CASE("the share of missing channels counts seeing ones only, and its limit is still usable") {
+  CorrectionSettings settings;
+  settings.max_missing_share = 0.05;
+  settings.sees.assign(80, 1);
+  for (std::size_t m = 60; m < 80; ++m) settings.sees[m] = 0;
+  Correction correction = make(settings, eye(80, 8));
+  CHECK(correction.seeing_channels() == 60);
+  Capture capture(std::vector<std::int32_t>(80, 9));
+  for (std::size_t m = 60; m < 80; ++m) capture.valid[m] = 0;
+  CHECK(apply(correction, capture).report.usable);
+  for (std::size_t m = 0; m < 3; ++m) capture.valid[m] = 0;
+  const Corrected at_limit = apply(correction, capture);
+  CHECK(at_limit.report.usable);  // 3 of 60 is 5 %
+  CHECK(at_limit.report.masked == 3);
+  CHECK(at_limit.weights[70] == 0.0F);
+  capture.valid[3] = 0;
+  const Corrected beyond = apply(correction, capture);
+  CHECK_FALSE(beyond.report.usable);
+  CHECK(beyond.report.reason == DropReason::too_few_channels);
+  CHECK(beyond.report.masked == 4);
+}
+
+TEST_CASE("a block of another shape, depth or configuration is corrupt") {
+  Correction correction = make({}, eye(4, 8));
+  Capture good({1, 2, 3, 4});
+  good.config_id = 5;
+  CHECK(apply(correction, good).report.usable);
+  CHECK(correction.config_id() == 5);
+
+  for (const std::vector<std::int32_t>& codes : {std::vector<std::int32_t>{}, {1, 2, 3}, {1, 2, 3, 4, 5}}) {
+    Capture other(codes);
+    other.config_id = 5;
+    const Corrected got = apply(correction, other);
+    CHECK_FALSE(got.report.usable);
+    CHECK(got.report.reason == DropReason::corrupt);
+    CHECK_FALSE(got.report.config_mismatch);
+  }
+  Capture fewer_flags = good;
+  fewer_flags.valid.pop_back();
+  CHECK(apply(correction, fewer_flags).report.reason == DropReason::corrupt);
+  Capture deeper = good;
+  deeper.bits = 9;
+  CHECK(apply(correction, deeper).report.reason == DropReason::corrupt);
+
+  Capture reconfigured = good;
+  reconfigured.config_id = 6;
+  const Corrected got = apply(correction, reconfigured);
+  CHECK_FALSE(got.report.usable);
+  CHECK(got.report.config_mismatch);
+  CHECK(apply(correction, good).report.usable);
+
+  correction.restart();
+  CHECK(apply(correction, reconfigured).report.usable);
+}
+
+TEST_CASE("calibration values that cannot be right are refused by name") {
+  const SourceDescription source = eye(3, 8);
+  const auto with = [&](auto change) {
+    CorrectionSettings settings;
+    change(settings);
+    return refusal(settings, source);
+  };
+  CHECK(with([](auto& s) {
+          s.dark = {0, nan, 0};
+        }) == "out of range: correction: the dark level of channel 1 is nan, expected a finite number");
+  CHECK(with([](auto& s) { s.dark = {0, 0, infinity}; }).find("channel 2 is inf") != std::string::npos);
+  CHECK(with([](auto& s) { s.gain = {1, 1, 0}; }).find("the gain of channel 2 is 0.0") != std::string::npos);
+  CHECK(with([](auto& s) { s.gain = {-1, 1, 1}; }).find("out of range") == 0);
+  CHECK(with([](auto& s) { s.gain = {1, 1}; }).find("mismatch: correction: the gain list has 2 entries") == 0);
+  CHECK(with([](auto& s) { s.dark = {1}; }).find("mismatch") == 0);
+  CHECK(with([](auto& s) { s.sees = {1, 1, 1, 1}; }).find("mismatch") == 0);
+  CHECK(with([](auto& s) { s.lsb = 0.0; }).find("lsb is 0.0") != std::string::npos);
+  CHECK(with([](auto& s) { s.lsb = nan; }).find("out of range") == 0);
+  CHECK(with([](auto& s) { s.saturation_share = 0.0; }).find("saturation_share") != std::string::npos);
+  CHECK(with([](auto& s) { s.max_missing_share = 1.5; }).find("max_missing_share is 1.5") != std::string::npos);
+  CHECK(with([](auto& s) { s.max_missing_share = nan; }).find("out of range") == 0);
+  CHECK(with([](auto& s) { s.dead_channels = {3}; }).find("dead channel 3 does not exist") != std::string::npos);
+  CHECK(with([](auto& s) { s.dead_channels = {-1}; }).find("out of range") == 0);
+  CHECK(with([](auto& s) { s.sees = {0, 0, 0}; }).find("usage") == 0);
+  CHECK(with([](auto& s) { s.dead_channels = {0}; }).find("usage: correction: 1 of 3 seeing channels") == 0);
+  CHECK(with([](auto&) {}) == "accepted");
+}
+
+TEST_CASE("a source whose channel map is not one ommatidium for each channel is refused") {
+  const auto with = [](auto change) {
+    SourceDescription source = eye(3, 8);
+    change(source);
+    return refusal({}, source);
+  };
+  CHECK(with([](auto& s) { s.ommatidium_of_channel = {0, 1}; }).find("mismatch: eye-1") == 0);
+  CHECK(with([](auto& s) { s.ommatidium_of_channel = {0, 1, 3}; }).find("mapped to ommatidium 3") != std::string::npos);
+  CHECK(with([](auto& s) { s.ommatidium_of_channel = {0, -1, 2}; }).find("out of range") == 0);
+  CHECK(with([](auto& s) { s.ommatidium_of_channel = {0, 1, 1}; }).find("another channel") != std::string::npos);
+  CHECK(with([](auto& s) { s.channels = 0; }).find("out of range") == 0);
+  CHECK(with([](auto& s) { s.bits = 0; }).find("0 bits") != std::string::npos);
+  CHECK(with([](auto& s) { s.bits = 25; }).find("25 bits") != std::string::npos);
+}
