@@ -52,11 +52,11 @@ class SampleSource {
   [[nodiscard]] FrameAccount account() const noexcept { return do_account(); }
 
  private:
-  virtual const SourceDescription& do_describe() const noexcept = 0;
+  [[nodiscard]] virtual const SourceDescription& do_describe() const noexcept = 0;
   virtual Result<void> do_start() = 0;
   virtual Result<SampleBlock> do_read(std::int64_t deadline_ns) = 0;
   virtual void do_stop() noexcept = 0;
-  virtual FrameAccount do_account() const noexcept = 0;
+  [[nodiscard]] virtual FrameAccount do_account() const noexcept = 0;
 
   bool started_ = false;
 };

@@ -1,0 +1,170 @@
+#!/bin/bash
+# Puts the scripts of tools/ through machines that this one is not: packages missing, no root, no sudo, another system,
+# no network. dpkg-query, apt-get, id and sudo are stand-ins at the front of PATH. Run from the root of the project.
+set -uo pipefail
+
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+shims=$place/bin
+state=$place/state # what the stand-ins remember
+project=$place/project
+mkdir -p "$shims" "$state" "$project"
+cp -r tools "$project/"
+passed=0
+failed=0
+
+shim() {
+  { printf '#!/bin/bash\n' && cat; } >"$shims/$1"
+  chmod +x "$shims/$1"
+}
+
+# One machine: which packages it has, who runs, how sudo and apt-get behave, what system it is.
+machine() {
+  rm -rf "$shims" "$state"
+  mkdir -p "$shims" "$state"
+  printf '%s\n' "$1" | tr ' ' '\n' >"$state/installed"
+  : >"$state/apt-calls"
+  shim dpkg-query <<END
+package=\${*: -1}
+grep -qx -- "\$package" "$state/installed" && echo installed
+END
+  shim id <<<"echo ${2:-0}"
+  shim apt-get <<END
+echo "\$DEBIAN_FRONTEND \$*" >>"$state/apt-calls"
+[[ " \$* " != *" install "* ]] || for word; do echo "\$word" >>"$state/installed"; done
+END
+  shim sudo <<'END'
+while [[ $1 == -* ]]; do shift; done
+exec "$@"
+END
+  printf 'ID=debian\nVERSION_ID="12"\nVERSION_CODENAME=bookworm\nPRETTY_NAME="Debian GNU/Linux 12"\n' >"$state/os-release"
+}
+
+run() {
+  output=$(CI=true PATH="$shims:$PATH" COMPUEYE_OS_RELEASE="$state/os-release" COMPUEYE_RETRY_SECONDS=0 \
+    "$project/tools/$1" "${@:2}" 2>&1 </dev/null)
+  status=$?
+}
+
+# expect WHAT STATUS PATTERN: the last run's exit code, and a pattern its output matches ("" = no output at all).
+expect() {
+  local matched=no
+  if [[ -z $3 ]]; then
+    [[ -n $output ]] || matched=yes
+  elif grep -qE -- "$3" <<<"$output"; then
+    matched=yes
+  fi
+  if [[ $status -eq $2 && $matched == yes ]]; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    printf 'FAILED: %s: exit %s (expected %s), output (expected "%s"):\n%s\n' "$1" "$status" "$2" "$3" "$output"
+  fi
+}
+
+calls() {
+  output=$(grep -c "$1" "$state/apt-calls")
+  status=0
+}
+
+everything=$(tools/install-packages --list build test lint | tr '\n' ' ')
+
+machine "$everything"
+run install-packages
+expect "nothing missing says nothing" 0 ""
+calls .
+expect "nothing missing does not call apt-get" 0 '^0$'
+run install-packages --check
+expect "--check with nothing missing" 0 ""
+
+machine "${everything/ninja-build /}"
+run install-packages --check
+expect "--check names what is missing" 1 '^ninja-build$'
+calls .
+expect "--check does not call apt-get" 0 '^0$'
+run install-packages
+expect "installs what is missing" 0 'installing 1 package.*ninja-build'
+calls '^noninteractive .*-y.* install .*ninja-build$'
+expect "one install, of that package only, without questions" 0 '^1$'
+calls ' update$'
+expect "one update" 0 '^1$'
+run install-packages
+expect "the second time there is nothing to do" 0 ""
+
+machine "" 1000
+run install-packages build
+expect "through sudo" 0 'installing 1[0-9] package'
+
+machine "" 1000
+shim sudo <<<'exit 1'
+run install-packages
+expect "sudo that wants a password, nobody there" 1 'sudo wants a password'
+
+machine "" 1000
+rm "$shims/sudo"
+mkdir "$state/path"
+for tool in bash awk grep tr cat mkdir dirname env sleep tail mktemp; do
+  ln -s "$(command -v "$tool")" "$state/path/$tool"
+done
+output=$(PATH="$shims:$state/path" COMPUEYE_OS_RELEASE="$state/os-release" "$project/tools/install-packages" 2>&1)
+status=$?
+expect "neither root nor sudo" 1 'neither root nor sudo'
+
+machine ""
+printf 'ID=fedora\nVERSION_ID=39\nPRETTY_NAME="Fedora 39"\n' >"$state/os-release"
+run install-packages
+expect "another system" 1 'this is Fedora 39, expected Debian 12 or newer'
+machine ""
+printf 'ID=debian\nVERSION_ID="11"\nVERSION_CODENAME=bullseye\nPRETTY_NAME="Debian 11"\n' >"$state/os-release"
+run install-packages
+expect "an older Debian" 1 'this is Debian 11, expected Debian 12 or newer'
+machine ""
+printf 'ID=raspbian\nVERSION_ID="12"\nVERSION_CODENAME=bookworm\nPRETTY_NAME="Raspbian 12"\n' >"$state/os-release"
+run install-packages
+expect "a derivative of Debian 12" 0 'installing'
+
+machine ""
+shim apt-get <<END
+echo "\$*" >>"$state/apt-calls"
+echo "Err:1 Temporary failure resolving 'somewhere'"
+exit 100
+END
+run install-packages
+expect "no network" 1 'cannot reach the package archive to install'
+calls ' install '
+expect "a second try, and no third" 0 '^2$'
+
+machine ""
+shim apt-get <<'END'
+echo "E: dpkg was interrupted"
+exit 100
+END
+run install-packages
+expect "a broken package system" 1 'could not install .*log: '
+expect "... whose words are shown" 1 'dpkg was interrupted'
+
+machine ""
+shim apt-get <<'END'
+exit 0
+END
+run install-packages
+expect "apt-get that claims success" 1 'still not installed'
+
+machine "$everything"
+run install-packages --check nonsense
+expect "an unknown group" 2 "no package group 'nonsense'"
+for script in install-packages build-preset demo test tidy; do
+  run "$script" --help
+  expect "$script --help has an example" 0 "^Example: tools/$script"
+  run "$script" --nonsense
+  expect "$script refuses an unknown option" 2 "unknown option '--nonsense'"
+done
+run test --preset fast
+expect "test refuses an unknown preset" 2 "unknown preset 'fast'"
+run test --filter
+expect "test --filter wants a value" 2 'needs a value'
+run demo --out
+expect "demo --out wants a folder" 2 'needs a folder'
+
+printf '%s passed, %s failed\n' "$passed" "$failed"
+[[ $failed -eq 0 && $passed -gt 0 ]]
