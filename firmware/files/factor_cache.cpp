@@ -1,0 +1,180 @@
+#include "firmware/files/factor_cache.hpp"
+
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "firmware/files/atomic_file.hpp"
+#include "firmware/files/file_descriptor.hpp"
+#include "firmware/files/file_error.hpp"
+#include "xxhash.h"
+
+namespace compueye::firmware {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the cache is stored as it lies in memory");
+
+using hal::ErrorCode;
+using hal::Result;
+
+constexpr char magic[8] = {'C', 'E', 'Y', 'E', 'F', 'A', 'C', 'T'};
+constexpr std::uint32_t format_version = 1;
+constexpr int max_order = 46340;  // its square still fits in 32 bits; 4 GiB of factor
+
+struct Header {
+  char magic[8];
+  std::uint32_t version;
+  std::int32_t order;
+  std::uint64_t response_hash;
+  std::uint64_t rho_bits;
+  std::uint64_t payload_checksum;
+  std::uint64_t header_checksum;  // of everything above
+};
+static_assert(sizeof(Header) == 48);
+
+std::uint64_t checksum_of(const Header& header) {
+  return XXH3_64bits(&header, offsetof(Header, header_checksum));
+}
+
+Header header_for(const FactorKey& key, std::uint64_t payload_checksum) {
+  Header header{};
+  std::memcpy(header.magic, magic, sizeof magic);
+  header.version = format_version;
+  header.order = key.order;
+  header.response_hash = key.response_hash;
+  header.rho_bits = std::bit_cast<std::uint64_t>(key.rho);
+  header.payload_checksum = payload_checksum;
+  header.header_checksum = checksum_of(header);
+  return header;
+}
+
+std::size_t packed_size(int order) {
+  const auto n = static_cast<std::size_t>(order);
+  return n * (n + 1) / 2;
+}
+
+Result<void> check_key(const std::filesystem::path& path, const FactorKey& key) {
+  if (key.order >= 1 && key.order <= max_order) return {};
+  return hal::fail(
+      ErrorCode::usage, path.string(),
+      "was asked for a factor of order " + std::to_string(key.order) + ", expected 1 to " + std::to_string(max_order));
+}
+
+Result<void> check_header(const std::filesystem::path& path, const Header& header, const FactorKey& key) {
+  if (std::memcmp(header.magic, magic, sizeof magic) != 0) {
+    return hal::fail(ErrorCode::bad_format, path.string(), "is not a stored factor; delete it, it will be made again");
+  }
+  // Before the checksum, which another version may compute over something else.
+  if (header.version != format_version) {
+    return hal::fail(
+        ErrorCode::stale, path.string(),
+        "has format version " + std::to_string(header.version) + ", expected " + std::to_string(format_version));
+  }
+  if (header.header_checksum != checksum_of(header)) {
+    return hal::fail(ErrorCode::bad_format, path.string(), "is damaged: the checksum of its header is wrong");
+  }
+  if (header.order != key.order || header.response_hash != key.response_hash ||
+      header.rho_bits != std::bit_cast<std::uint64_t>(key.rho)) {
+    return hal::fail(ErrorCode::stale, path.string(),
+                     "was made from another response, rho or order; expected order " + std::to_string(key.order) +
+                         " and found " + std::to_string(header.order));
+  }
+  return {};
+}
+
+tl::unexpected<hal::Error> wrong_length(const std::filesystem::path& path, std::uint64_t expected,
+                                        const std::string& actual) {
+  return hal::fail(ErrorCode::bad_format, path.string(),
+                   "should have " + std::to_string(expected) + " bytes, but has " + actual);
+}
+
+struct FreeState {
+  void operator()(XXH3_state_t* state) const noexcept { XXH3_freeState(state); }
+};
+
+// Piece by piece: the checksum then reads what the cache still holds.
+Result<std::uint64_t> read_payload(const FileDescriptor& file, const std::filesystem::path& path,
+                                   std::span<float> values) {
+  constexpr std::size_t piece = 1U << 20U;
+  const std::unique_ptr<XXH3_state_t, FreeState> state(XXH3_createState());
+  if (!state) return hal::fail(ErrorCode::no_space, path.string(), "cannot be checked: out of memory");
+  XXH3_64bits_reset(state.get());
+  auto bytes = std::as_writable_bytes(values);
+  const std::size_t total = bytes.size();
+  while (!bytes.empty()) {
+    const auto part = bytes.first(std::min(piece, bytes.size()));
+    auto got = read_some(file, path, part);
+    if (!got) return tl::unexpected(std::move(got.error()));
+    if (*got != part.size()) {
+      return wrong_length(path, sizeof(Header) + total,
+                          "only " + std::to_string(sizeof(Header) + total - bytes.size() + *got));
+    }
+    XXH3_64bits_update(state.get(), part.data(), part.size());
+    bytes = bytes.subspan(part.size());
+  }
+  return XXH3_64bits_digest(state.get());
+}
+
+}  // namespace
+
+std::filesystem::path factor_path(const std::filesystem::path& folder, const FactorKey& key) {
+  const Header header = header_for(key, 0);
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string hex(16, '0');
+  std::uint64_t rest = header.header_checksum;
+  for (std::size_t i = hex.size(); i-- > 0; rest >>= 4U) hex[i] = digits[rest & 0xFU];
+  return folder / ("factor-" + hex + ".bin");
+}
+
+Result<recon::Factor> load_factor(const std::filesystem::path& folder, const FactorKey& key) {
+  const std::filesystem::path path = factor_path(folder, key);
+  if (auto ok = check_key(path, key); !ok) return tl::unexpected(std::move(ok.error()));
+  auto file = open_for_reading(path);
+  if (!file) return tl::unexpected(std::move(file.error()));
+  Header header{};
+  auto got = read_some(*file, path, std::as_writable_bytes(std::span(&header, 1)));
+  if (!got) return tl::unexpected(std::move(got.error()));
+  recon::Factor factor{key.rho, key.order, {}};
+  const std::size_t count = packed_size(key.order);
+  const std::uint64_t expected = sizeof header + count * sizeof(float);
+  if (*got != sizeof header) return wrong_length(path, expected, "only " + std::to_string(*got));
+  if (auto ok = check_header(path, header, key); !ok) return tl::unexpected(std::move(ok.error()));
+  if (const auto size = regular_size(*file); !size || *size != expected) {
+    return wrong_length(path, expected, size ? std::to_string(*size) : "no fixed size");
+  }
+  factor.inverse.resize(count);
+  const auto checksum = read_payload(*file, path, factor.inverse);
+  if (!checksum) return tl::unexpected(checksum.error());
+  if (*checksum != header.payload_checksum) {
+    return hal::fail(ErrorCode::bad_format, path.string(), "is damaged: the checksum of its values is wrong");
+  }
+  return factor;
+}
+
+Result<void> store_factor(const std::filesystem::path& folder, const FactorKey& key, const recon::Factor& factor) {
+  const std::filesystem::path path = factor_path(folder, key);
+  if (auto ok = check_key(path, key); !ok) return ok;
+  if (factor.order != key.order || std::bit_cast<std::uint64_t>(factor.rho) != std::bit_cast<std::uint64_t>(key.rho) ||
+      factor.inverse.size() != packed_size(key.order)) {
+    return hal::fail(ErrorCode::mismatch, path.string(),
+                     "was given a factor of order " + std::to_string(factor.order) + " with " +
+                         std::to_string(factor.inverse.size()) + " values, expected order " +
+                         std::to_string(key.order) + " and the rho of its key");
+  }
+  std::error_code ec;
+  std::filesystem::create_directories(folder, ec);
+  if (ec) return tl::unexpected(file_error(ec.value(), folder, "cannot be made to store a factor in"));
+  const auto payload = std::as_bytes(std::span(factor.inverse));
+  const Header header = header_for(key, XXH3_64bits(payload.data(), payload.size()));
+  auto file = AtomicFile::create(path);
+  if (!file) return tl::unexpected(std::move(file.error()));
+  return file->write(std::as_bytes(std::span(&header, 1))).and_then([&] { return file->write(payload); }).and_then([&] {
+    return file->commit();
+  });
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "hal/result.hpp"
+#include "recon/reconstructor.hpp"
+
+namespace compueye::firmware {
+
+/// What a stored factor was made from. Any difference makes it another factor.
+struct FactorKey {
+  std::uint64_t response_hash = 0;  ///< recon::Response::content_hash()
+  double rho = 0.0;                 ///< ADMM penalty, compared bit by bit
+  int order = 0;                    ///< number of seeing rows, 1 to 46340
+};
+
+/// "<folder>/factor-<16 hex digits of the key's hash>.bin"
+[[nodiscard]] std::filesystem::path factor_path(const std::filesystem::path& folder, const FactorKey& key);
+
+/// Errors: not_found (nothing stored under this key), stale (stored by another version of this program, or for another
+/// key), bad_format (truncated, too long, or damaged: the checksum is wrong), io. Never a factor that is not the one
+/// asked for.
+[[nodiscard]] hal::Result<recon::Factor> load_factor(const std::filesystem::path& folder, const FactorKey& key);
+
+/// Stores atomically, making the folder when it is missing. A board's folder may well be read-only: the caller can go
+/// on after an error. Errors: mismatch (the factor is not the key's), and those of AtomicFile.
+[[nodiscard]] hal::Result<void> store_factor(const std::filesystem::path& folder, const FactorKey& key,
+                                             const recon::Factor& factor);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// Owns an open file; closes it when it goes away.
+class FileDescriptor {
+ public:
+  FileDescriptor() = default;
+  explicit FileDescriptor(int fd) noexcept : fd_(fd) {}
+  FileDescriptor(FileDescriptor&& other) noexcept;
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept;
+  ~FileDescriptor();
+
+  [[nodiscard]] int get() const noexcept { return fd_; }
+  [[nodiscard]] bool is_open() const noexcept { return fd_ >= 0; }
+  /// 0, or the errno of close(): on network file systems a full disk may only be noticed here.
+  int close() noexcept;
+
+ private:
+  int fd_ = -1;
+};
+
+/// Opens for reading. Errors: not_found, io (a folder, no permission).
+[[nodiscard]] hal::Result<FileDescriptor> open_for_reading(const std::filesystem::path& path);
+
+/// Size in bytes of a regular file; nothing for a pipe or a device, whose end is only known once it is reached.
+[[nodiscard]] std::optional<std::uint64_t> regular_size(const FileDescriptor& file) noexcept;
+
+/// Fills `into` as far as the file goes; returns the bytes read, fewer only at the end of the file.
+[[nodiscard]] hal::Result<std::size_t> read_some(const FileDescriptor& file, const std::filesystem::path& path,
+                                                 std::span<std::byte> into);
+
+/// Writes everything, or returns the errno that stopped it. Neither allocates nor throws.
+[[nodiscard]] int write_all(int fd, std::span<const std::byte> bytes) noexcept;
+
+/// The whole file. A file larger than `max_bytes` is refused with no_space before it is read.
+[[nodiscard]] hal::Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t max_bytes);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "hal/image.hpp"
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// Pictures of at most this many rows and columns are read and written.
+inline constexpr int max_png_side = 8192;
+
+/// Reads a PNG of any kind (grey, grey with alpha, palette, RGB, RGBA; 1 to 16 bits; interlaced or not) as a grey
+/// picture. A code is taken as a linear intensity, code / (2^bits - 1): scenes are given in linear units, so gamma,
+/// sRGB and ICC chunks are left aside. Colours become 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709 luminance).
+/// Errors: not_found, io; bad_format (no PNG, truncated, damaged, a size that the file is too small for), unsupported
+/// (pixels that are not opaque, because what is behind them is not known), out_of_range (more than max_png_side).
+[[nodiscard]] hal::Result<hal::Image> read_png(const std::filesystem::path& path);
+
+/// Writes a grey PNG of 8 or 16 bits atomically: code = round(value * (2^bits - 1)), values clipped to 0..1, NaN as 0.
+/// Errors: usage (bits, size), those of AtomicFile.
+[[nodiscard]] hal::Result<void> write_png(const std::filesystem::path& path, const hal::Image& image, int bits = 8);
+
+/// An RGB picture with 8 bits a channel: rows * cols * 3 bytes, row 0 on top.
+struct RgbImage {
+  int rows = 0;
+  int cols = 0;
+  std::vector<std::uint8_t> pixels;
+};
+[[nodiscard]] hal::Result<void> write_png(const std::filesystem::path& path, const RgbImage& image);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,116 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "firmware/files/factor_cache.hpp"
+#include "temporary_folder.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+using compueye::test::bytes_of;
+using compueye::test::TemporaryFolder;
+using hal::ErrorCode;
+
+namespace {
+
+recon::Factor some_factor(int order, double rho) {
+  recon::Factor factor{rho, order, std::vector<float>(static_cast<std::size_t>(order * (order + 1) / 2))};
+  for (std::size_t i = 0; i < factor.inverse.size(); ++i) factor.inverse[i] = 1.0F / static_cast<float>(i + 3);
+  return factor;
+}
+
+constexpr FactorKey key{0x0123456789ABCDEFULL, 0.125, 50};
+
+}  // namespace
+
+TEST_CASE("a factor comes back bit for bit under its key only") {
+  const TemporaryFolder folder;
+  const auto cache = folder / "board/.cache";
+  CHECK(load_factor(cache, key).error().code == ErrorCode::not_found);
+  const recon::Factor factor = some_factor(50, 0.125);
+  REQUIRE(store_factor(cache, key, factor).has_value());
+  const auto back = load_factor(cache, key).value();
+  CHECK(back.rho == factor.rho);
+  CHECK(back.order == factor.order);
+  REQUIRE(back.inverse.size() == factor.inverse.size());
+  CHECK(std::memcmp(back.inverse.data(), factor.inverse.data(), factor.inverse.size() * 4) == 0);
+
+  const std::string name = factor_path(cache, key).filename().string();
+  CHECK(name.size() == std::string("factor-0123456789abcdef.bin").size());
+  for (const FactorKey& other : {FactorKey{key.response_hash ^ 1U, key.rho, key.order},
+                                 FactorKey{key.response_hash, std::nextafter(key.rho, 1.0), key.order},
+                                 FactorKey{key.response_hash, key.rho, key.order + 1}}) {
+    CHECK(factor_path(cache, other) != factor_path(cache, key));
+    CHECK(load_factor(cache, other).error().code == ErrorCode::not_found);
+    // A file that was renamed, or a hash that collided.
+    std::filesystem::copy_file(factor_path(cache, key), factor_path(cache, other));
+    CHECK(load_factor(cache, other).error().code == ErrorCode::stale);
+  }
+}
+
+TEST_CASE("a factor of another format version is stale") {
+  const TemporaryFolder folder;
+  REQUIRE(store_factor(folder.path(), key, some_factor(50, 0.125)).has_value());
+  const auto path = factor_path(folder.path(), key);
+  std::string bytes = bytes_of(path);
+  bytes[8] = 99;
+  folder.file(path.filename().string(), bytes);
+  const auto result = load_factor(folder.path(), key);
+  CHECK(result.error().code == ErrorCode::stale);
+  CHECK(result.error().sentence.find("99") != std::string::npos);
+}
+
+TEST_CASE("a damaged factor is never taken for a good one") {
+  const TemporaryFolder folder;
+  const FactorKey small{7, 2.0, 9};
+  const recon::Factor factor = some_factor(9, 2.0);
+  REQUIRE(store_factor(folder.path(), small, factor).has_value());
+  const auto path = factor_path(folder.path(), small);
+  const std::string good = bytes_of(path);
+  for (std::size_t n = 0; n < 2000; ++n) {
+    const std::string bad = test::damaged(good, n);
+    if (bad == good) continue;
+    folder.file(path.filename().string(), bad);
+    const auto result = load_factor(folder.path(), small);
+    REQUIRE_FALSE(result.has_value());
+    const ErrorCode code = result.error().code;
+    REQUIRE((code == ErrorCode::bad_format || code == ErrorCode::stale));
+    REQUIRE(result.error().place == path.string());
+  }
+  for (std::size_t length = 0; length < good.size(); ++length) {
+    folder.file(path.filename().string(), good.substr(0, length));
+    REQUIRE(load_factor(folder.path(), small).error().code == ErrorCode::bad_format);
+  }
+  folder.file(path.filename().string(), good + "x");
+  CHECK(load_factor(folder.path(), small).error().code == ErrorCode::bad_format);
+  folder.file(path.filename().string(), good);
+  CHECK(load_factor(folder.path(), small).has_value());
+}
+
+TEST_CASE("a factor that is not the key's is not stored") {
+  const TemporaryFolder folder;
+  CHECK(store_factor(folder.path(), key, some_factor(49, 0.125)).error().code == ErrorCode::mismatch);
+  CHECK(store_factor(folder.path(), key, some_factor(50, 0.25)).error().code == ErrorCode::mismatch);
+  recon::Factor torn = some_factor(50, 0.125);
+  torn.inverse.pop_back();
+  CHECK(store_factor(folder.path(), key, torn).error().code == ErrorCode::mismatch);
+  for (const int order : {0, -5, 46341, 2147483647}) {
+    CHECK(store_factor(folder.path(), {1, 1.0, order}, {1.0, order, {}}).error().code == ErrorCode::usage);
+    CHECK(load_factor(folder.path(), {1, 1.0, order}).error().code == ErrorCode::usage);
+  }
+  CHECK(folder.entries() == 0);
+}
+
+TEST_CASE("a folder that cannot be written gives an error and nothing else") {
+  const TemporaryFolder folder;
+  folder.file("file", "x");
+  const auto below_a_file = store_factor(folder / "file/.cache", key, some_factor(50, 0.125));
+  REQUIRE_FALSE(below_a_file.has_value());
+  CHECK(below_a_file.error().place == (folder / "file/.cache").string());
+  CHECK_FALSE(store_factor("/proc/compueye", key, some_factor(50, 0.125)).has_value());
+  CHECK(load_factor(folder / "file", key).error().code == ErrorCode::not_found);
+  CHECK(folder.entries() == 1);
+}

@@ -1,0 +1,269 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "firmware/files/matrix_market.hpp"
+#include "firmware/files/response_file.hpp"
+#include "temporary_folder.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+using compueye::recon::Response;
+using compueye::test::bytes_of;
+using compueye::test::TemporaryFolder;
+using hal::ErrorCode;
+
+namespace {
+
+const std::string real_general = "%%MatrixMarket matrix coordinate real general\n";
+
+std::vector<double> dense(const Response& a) {
+  std::vector<double> out(static_cast<std::size_t>(a.rows()) * static_cast<std::size_t>(a.cols()), 0.0);
+  for (int m = 0; m < a.rows(); ++m) {
+    a.for_each_in_row(m, [&](std::int32_t c, double v) {
+      out[static_cast<std::size_t>(m) * static_cast<std::size_t>(a.cols()) + static_cast<std::size_t>(c)] = v;
+    });
+  }
+  return out;
+}
+
+// Values of every size a double can have, in a matrix with empty rows.
+Response awkward(int rows, int cols) {
+  std::vector<std::int64_t> row_start{0};
+  std::vector<std::int32_t> columns;
+  std::vector<double> values;
+  std::uint64_t state = 42;
+  for (int m = 0; m < rows; ++m) {
+    for (int c = 0; c < cols && m % 3 != 1; ++c) {
+      state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+      if ((state >> 60U) > 3) continue;
+      double value = 0.0;
+      const std::uint64_t bits = state ^ (state << 21U);
+      std::memcpy(&value, &bits, sizeof value);
+      if (!std::isfinite(value)) value = 1.0 / 3.0;
+      columns.push_back(c);
+      values.push_back(value);
+    }
+    row_start.push_back(static_cast<std::int64_t>(values.size()));
+  }
+  return Response::from_csr(rows, cols, row_start, columns, values).value();
+}
+
+}  // namespace
+
+TEST_CASE("a sparse response comes back bit for bit") {
+  const TemporaryFolder folder;
+  const Response a = awkward(40, 70);
+  REQUIRE(write_matrix_market(folder / "a.mtx", a, "two lines\nof comment").has_value());
+  const std::string text = bytes_of(folder / "a.mtx");
+  CHECK(text.substr(0, real_general.size()) == real_general);
+  CHECK(text.find("\n% two lines\n% of comment\n40 70 ") != std::string::npos);
+  const Response back = read_matrix_market(folder / "a.mtx").value();
+  CHECK(back.rows() == 40);
+  CHECK(back.cols() == 70);
+  CHECK_FALSE(back.is_dense());
+  CHECK(back.content_hash() == a.content_hash());
+  CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("the smallest, largest and signed-zero values survive") {
+  const TemporaryFolder folder;
+  const std::vector<double> values{std::numeric_limits<double>::max(),
+                                   std::numeric_limits<double>::denorm_min(),
+                                   -std::numeric_limits<double>::min(),
+                                   -0.0,
+                                   1.0 / 3.0,
+                                   1e22};
+  const Response a = Response::from_csr(1, 6, {0, 6}, {0, 1, 2, 3, 4, 5}, values).value();
+  REQUIRE(write_matrix_market(folder / "a.mtx", a).has_value());
+  const Response back = read_matrix_market(folder / "a.mtx").value();
+  REQUIRE(back.values().size() == 6);
+  CHECK(std::memcmp(back.values().data(), values.data(), 48) == 0);
+}
+
+TEST_CASE("every accepted kind of Matrix Market file is read") {
+  const TemporaryFolder folder;
+  struct Case {
+    const char* what;
+    std::string text;
+    int rows, cols;
+    std::vector<double> dense;
+  };
+  const std::vector<Case> cases{
+      {"plain", real_general + "2 3 3\n1 1 0.5\n2 3 -1e-3\n1 2 +2\n", 2, 3, {.5, 2, 0, 0, 0, -1e-3}},
+      {"comments, blank lines, tabs, CRLF, no last newline",
+       "%%matrixmarket MATRIX Coordinate REAL General\r\n% hello\r\n%\r\n\r\n 2\t2 2\r\n\r\n 2 \t 1  7 \r\n1 1 3",
+       2,
+       2,
+       {3, 0, 7, 0}},
+      {"duplicates are summed", real_general + "1 2 4\n1 2 1\n1 1 5\n1 2 10\n1 2 100\n", 1, 2, {5, 111}},
+      {"unsorted rows", real_general + "3 1 3\n3 1 3\n1 1 1\n2 1 2\n", 3, 1, {1, 2, 3}},
+      {"explicit zero", real_general + "1 2 1\n1 1 0\n", 1, 2, {0, 0}},
+      {"underflow", real_general + "1 1 1\n1 1 1e-999\n", 1, 1, {0}},
+      {"integer", "%%MatrixMarket matrix coordinate integer general\n1 2 1\n1 2 -7\n", 1, 2, {0, -7}},
+      {"pattern", "%%MatrixMarket matrix coordinate pattern general\n2 2 2\n1 2\n2 1\n", 2, 2, {0, 1, 1, 0}},
+      {"symmetric", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 4\n2 1 5\n", 2, 2, {4, 5, 5, 0}},
+      {"skew", "%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n2 1 5\n", 2, 2, {0, -5, 5, 0}},
+      {"array", "%%MatrixMarket matrix array real general\n2 3\n1\n4\n2\n5\n3\n6\n", 2, 3, {1, 2, 3, 4, 5, 6}},
+      {"integer array", "%%MatrixMarket matrix array integer general\n1 1\n-3\n", 1, 1, {-3}},
+  };
+  for (const Case& c : cases) {
+    CAPTURE(c.what);
+    const auto a = read_matrix_market(folder.file("a.mtx", c.text));
+    REQUIRE_MESSAGE(a.has_value(), (a ? "" : a.error().text()));
+    CHECK(a->rows() == c.rows);
+    CHECK(a->cols() == c.cols);
+    CHECK(dense(*a) == c.dense);
+    CHECK(a->is_dense() == (c.text.find("array") != std::string::npos));
+  }
+}
+
+TEST_CASE("a hostile .mtx is refused with file, line, value and expectation") {
+  const TemporaryFolder folder;
+  struct Case {
+    const char* what;
+    std::string text;
+    ErrorCode code;
+    int line;  // 0: the error is about the whole file
+    const char* words;
+  };
+  const std::string pattern = "%%MatrixMarket matrix coordinate pattern general\n";
+  const std::vector<Case> cases{
+      {"empty", "", ErrorCode::bad_format, 1, "no Matrix Market banner"},
+      {"no banner", "2 2 1\n1 1 1\n", ErrorCode::bad_format, 1, "no Matrix Market banner"},
+      {"short banner", "%%MatrixMarket matrix coordinate\n", ErrorCode::bad_format, 1, "3 words, expected 5"},
+      {"vector", "%%MatrixMarket vector coordinate real general\n", ErrorCode::bad_format, 1, "'vector'"},
+      {"complex", "%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 1 0\n", ErrorCode::unsupported, 1,
+       "'complex'"},
+      {"hermitian", "%%MatrixMarket matrix coordinate real hermitian\n", ErrorCode::unsupported, 1, "'hermitian'"},
+      {"array pattern", "%%MatrixMarket matrix array pattern general\n", ErrorCode::bad_format, 1, "'pattern'"},
+      {"array symmetric", "%%MatrixMarket matrix array real symmetric\n", ErrorCode::bad_format, 1, "'symmetric'"},
+      {"only banner", real_general, ErrorCode::bad_format, 2, "end of the file"},
+      {"short sizes", real_general + "2 2\n1 1 1\n", ErrorCode::bad_format, 2, "number of entries"},
+      {"long sizes", real_general + "2 2 1 1\n1 1 1\n", ErrorCode::bad_format, 2, "'1' too much"},
+      {"zero rows", real_general + "0 2 1\n1 1 1\n", ErrorCode::out_of_range, 2, "'0' for the number of rows"},
+      {"negative columns", real_general + "2 -2 1\n1 1 1\n", ErrorCode::out_of_range, 2, "'-2'"},
+      {"float rows", real_general + "2.5 2 1\n1 1 1\n", ErrorCode::bad_format, 2, "'2.5'"},
+      {"huge rows", real_general + "2000000000 2 1\n1 1 1\n", ErrorCode::unsupported, 2, "2000000000 x 2"},
+      {"overflowing", real_general + "99999999999999999999 2 1\n", ErrorCode::out_of_range, 2, "99999999999999999999"},
+      {"no entries", real_general + "2 2 0\n", ErrorCode::out_of_range, 2, "no entries"},
+      {"absurd count", real_general + "2 2 4611686018427387000\n1 1 1\n", ErrorCode::bad_format, 2,
+       "4611686018427387000"},
+      {"huge array", "%%MatrixMarket matrix array real general\n16777216 67108864\n1\n", ErrorCode::bad_format, 2,
+       "can hold"},
+      {"row 0", real_general + "2 2 1\n0 1 1\n", ErrorCode::out_of_range, 3,
+       "'0' for the row, expected a whole number from 1 to 2"},
+      {"row beyond", real_general + "2 3 1\n3 1 1\n", ErrorCode::out_of_range, 3, "'3' for the row"},
+      {"column beyond", real_general + "2 3 2\n1 1 1\n\n2 4 1\n", ErrorCode::out_of_range, 5,
+       "'4' for the column, expected a whole number from 1 to 3"},
+      {"NaN", real_general + "2 2 1\n1 1 nan\n", ErrorCode::out_of_range, 3, "'nan', expected a finite number"},
+      {"infinity", real_general + "2 2 1\n1 1 -inf\n", ErrorCode::out_of_range, 3, "'-inf'"},
+      {"overflow", real_general + "2 2 1\n1 1 1e999\n", ErrorCode::out_of_range, 3,
+       "'1e999', which no double can hold"},
+      {"words", real_general + "2 2 1\n1 1 one\n", ErrorCode::bad_format, 3, "'one'"},
+      {"Fortran exponent", real_general + "2 2 1\n1 1 1.0D+00\n", ErrorCode::bad_format, 3, "'1.0D+00'"},
+      {"decimal comma", real_general + "2 2 1\n1 1 0,5\n", ErrorCode::bad_format, 3, "'0,5'"},
+      {"two signs", real_general + "2 2 1\n1 1 +-5\n", ErrorCode::bad_format, 3, "'+-5'"},
+      {"value missing", real_general + "2 2 1\n1 1\n", ErrorCode::bad_format, 3, "the end of the line"},
+      {"column missing", pattern + "2 2 1\n1 \n", ErrorCode::bad_format, 3, "the end of the line"},
+      {"value too much", real_general + "2 2 1\n1 1 1 0\n", ErrorCode::bad_format, 3, "'0' too much"},
+      {"pattern with value", pattern + "2 2 1\n1 1 1\n", ErrorCode::bad_format, 3, "a row and a column"},
+      {"float integer", "%%MatrixMarket matrix coordinate integer general\n1 1 1\n1 1 1.5\n", ErrorCode::bad_format, 3,
+       "'1.5'"},
+      {"large integer", "%%MatrixMarket matrix coordinate integer general\n1 1 1\n1 1 9007199254740993\n",
+       ErrorCode::out_of_range, 3, "9007199254740993"},
+      {"fewer", real_general + "2 2 2\n1 1 1.000000\n", ErrorCode::bad_format, 0,
+       "ends after 1 entries, expected the 2"},
+      {"more", real_general + "2 2 1\n1 1 1\n2 2 1\n", ErrorCode::bad_format, 4, "goes on after the 1"},
+      {"sum overflows", real_general + "1 1 2\n1 1 1e308\n1 1 1e308\n", ErrorCode::out_of_range, 0, "(0, 0)"},
+      {"upper", "%%MatrixMarket matrix coordinate real symmetric\n2 2 1\n1 2 5\n", ErrorCode::bad_format, 3, "(1, 2)"},
+      {"skew diagonal", "%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n1 1 5\n", ErrorCode::bad_format,
+       3, "below the diagonal"},
+      {"symmetric not square", "%%MatrixMarket matrix coordinate real symmetric\n2 3 1\n1 1 5\n", ErrorCode::bad_format,
+       2, "square"},
+      {"array short", "%%MatrixMarket matrix array real general\n2 1\n1.00000\n", ErrorCode::bad_format, 0,
+       "ends after 1"},
+      {"array long", "%%MatrixMarket matrix array real general\n1 1\n1\n2\n", ErrorCode::bad_format, 4, "goes on"},
+      {"array two a line", "%%MatrixMarket matrix array real general\n2 1\n1 2\n", ErrorCode::bad_format, 3,
+       "one value a line"},
+      {"binary", real_general + std::string("2 2 1\n1 1 \0\x01\xff", 13), ErrorCode::bad_format, 3, "'\?\?\?'"},
+  };
+  for (const Case& c : cases) {
+    CAPTURE(c.what);
+    const auto path = folder.file("hostile.mtx", c.text);
+    const auto a = read_matrix_market(path);
+    REQUIRE_FALSE(a.has_value());
+    CHECK(a.error().code == c.code);
+    CHECK(a.error().place == path.string() + (c.line > 0 ? ":" + std::to_string(c.line) : ""));
+    CHECK_MESSAGE(a.error().sentence.find(c.words) != std::string::npos, a.error().sentence);
+  }
+  CHECK(read_matrix_market(folder / "missing.mtx").error().code == ErrorCode::not_found);
+}
+
+TEST_CASE("a damaged .mtx is an error or a matrix, never a crash") {
+  const TemporaryFolder folder;
+  REQUIRE(write_matrix_market(folder / "good.mtx", awkward(6, 9), "note").has_value());
+  const std::string good = bytes_of(folder / "good.mtx");
+  int refused = 0, read = 0;
+  for (std::size_t n = 0; n < 3000; ++n) {
+    const auto a = read_matrix_market(folder.file("fuzz.mtx", test::damaged(good, n)));
+    if (a) {
+      ++read;
+      for (const double v : a->values()) REQUIRE(std::isfinite(v));
+    } else {
+      ++refused;
+      REQUIRE_FALSE(a.error().sentence.empty());
+    }
+  }
+  CHECK(refused > 500);
+  CHECK(read > 100);
+}
+
+TEST_CASE("a response is read and written by its extension") {
+  const TemporaryFolder folder;
+  const Response a = Response::from_csr(2, 3, {0, 1, 3}, {1, 0, 2}, {0.5, 0.25, 1.0}).value();
+  REQUIRE(write_response(folder / "a.npy", a).has_value());
+  REQUIRE(write_response(folder / "a.MTX", a).has_value());
+  const Response from_npy = read_response(folder / "a.npy").value();
+  CHECK(from_npy.is_dense());
+  CHECK(dense(from_npy) == std::vector<double>{0, .5, 0, .25, 0, 1});
+  CHECK(read_response(folder / "a.MTX")->content_hash() == a.content_hash());
+  REQUIRE(write_response(folder / "d.mtx", from_npy).has_value());
+  CHECK(read_response(folder / "d.mtx")->content_hash() == a.content_hash());
+
+  for (const char* name : {"a.csv", "a", "a.mtx.gz"}) {
+    CAPTURE(name);
+    const auto write = write_response(folder / name, a);
+    CHECK(write.error().code == ErrorCode::usage);
+    CHECK(write.error().sentence.find(".npy (dense) or .mtx") != std::string::npos);
+    CHECK(read_response(folder / name).error().code == ErrorCode::usage);
+  }
+  CHECK(folder.entries() == 3);
+}
+
+TEST_CASE("a dense response that would be too large is refused with its size") {
+  const TemporaryFolder folder;
+  const Response wide = Response::from_csr(6400, 160 * 160 * 2, std::vector<std::int64_t>(6401, 0), {}, {}).value();
+  const auto result = write_response(folder / "wide.npy", wide);
+  REQUIRE_FALSE(result.has_value());
+  CHECK(result.error().code == ErrorCode::no_space);
+  CHECK(result.error().sentence.find("1.23 GiB") != std::string::npos);
+  CHECK(result.error().sentence.find(".mtx") != std::string::npos);
+  CHECK(folder.entries() == 0);
+  const Response small = Response::from_dense(2, 2, {1, 2, 3, 4}).value();
+  CHECK(write_response(folder / "small.npy", small, 15).error().code == ErrorCode::no_space);
+  CHECK(write_response(folder / "small.npy", small, 16).has_value());
+}
+
+TEST_CASE("a dense response with NaN, or beyond float32, is refused") {
+  const TemporaryFolder folder;
+  const Response large = Response::from_dense(1, 2, {0.0, 1e39}).value();
+  const auto result = write_response(folder / "large.npy", large);
+  CHECK(result.error().code == ErrorCode::out_of_range);
+  CHECK(result.error().sentence.find("(0, 1)") != std::string::npos);
+  CHECK(folder.entries() == 0);
+}
