@@ -126,7 +126,7 @@ void draw_bar(Canvas& canvas, const Layout& layout, int top, int left) {
     const double value = width > 1 ? 2.0 * c / (width - 1) - 1.0 : 0.0;
     canvas.fill(top, left + c, bar_height, 1, diverging_colour(value));
   }
-  const int below = top + bar_height + 4;
+  const int below = top + bar_height;
   const std::string low = short_number(-layout.scale), high = short_number(layout.scale);
   canvas.text(below, left, low, figure_colour);
   canvas.text(below, left + (width - glyph_cols) / 2, "0", figure_colour);
@@ -146,12 +146,11 @@ void draw_panel(Canvas& canvas, const Layout& layout, int top, int left, int pic
     }
   }
   int line = top + picture_height + 10;
+  canvas.text(line, left, wrap(layout.panel->name, layout.width).front(), name_colour);
   if (layout.has_bar()) {
-    draw_bar(canvas, layout, line, x);
+    draw_bar(canvas, layout, line + line_height + 4, x);
     line += bar_height + 4 + line_height;
   }
-  const std::string name = wrap(layout.panel->name, layout.width).front();
-  canvas.text(line, left, name, name_colour);
   for (const std::string& figures : layout.figures) canvas.text(line += line_height, left, figures, figure_colour);
 }
 
@@ -169,8 +168,9 @@ double error_scale(const hal::Image& error) {
   if (most == 0.0) most = *std::max_element(magnitudes.begin(), magnitudes.end());
   if (most == 0.0) return 1.0;
   const double decade = std::pow(10.0, std::floor(std::log10(most)));
+  // With room for what float32 makes of 0.1.
   for (const double step : {1.0, 2.0, 5.0}) {
-    if (most <= step * decade * (1.0 + 1e-9)) return step * decade;
+    if (most <= step * decade * (1.0 + 1e-6)) return step * decade;
   }
   return 10.0 * decade;
 }
@@ -184,6 +184,7 @@ Result<Panel> error_panel(const hal::Image& picture, const hal::Image& truth) {
   }
   Panel panel;
   panel.name = "error";
+  panel.figures = {"picture minus truth"};
   panel.kind = PanelKind::signed_error;
   panel.image = picture;
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) panel.image.pixels[i] -= truth.pixels[i];

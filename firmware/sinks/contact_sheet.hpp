@@ -30,7 +30,7 @@ struct Panel {
 /// times a power of ten; 1 for a picture without error. Non-finite pixels do not count.
 [[nodiscard]] double error_scale(const hal::Image& error);
 
-/// The panel "error" with picture - truth. Error mismatch: different sizes.
+/// The panel "error" with picture minus truth. Error mismatch: different sizes.
 [[nodiscard]] hal::Result<Panel> error_panel(const hal::Image& picture, const hal::Image& truth);
 
 /// Puts panels side by side under a title: every picture enlarged by a whole number until its longer side has at least
