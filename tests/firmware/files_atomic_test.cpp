@@ -13,7 +13,7 @@
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/npy.hpp"
 #include "firmware/files/npy_frame_writer.hpp"
-#include "temporary_folder.hpp"
+#include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "firmware/files/factor_cache.hpp"
-#include "temporary_folder.hpp"
+#include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;

@@ -8,7 +8,7 @@
 
 #include "firmware/files/matrix_market.hpp"
 #include "firmware/files/response_file.hpp"
-#include "temporary_folder.hpp"
+#include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "firmware/files/npy.hpp"
-#include "temporary_folder.hpp"
+#include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;

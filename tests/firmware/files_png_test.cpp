@@ -9,7 +9,7 @@
 
 #include "firmware/files/png.hpp"
 #include "firmware/files/png_encoder.hpp"
-#include "temporary_folder.hpp"
+#include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;

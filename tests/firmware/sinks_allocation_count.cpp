@@ -1,4 +1,4 @@
-#include "sinks_allocation_count.hpp"
+#include "tests/firmware/sinks_allocation_count.hpp"
 
 #include <atomic>
 #include <cstddef>

@@ -10,7 +10,7 @@
 #include "firmware/sinks/bitmap_font.hpp"
 #include "firmware/sinks/contact_sheet.hpp"
 #include "firmware/sinks/diverging_colours.hpp"
-#include "temporary_folder.hpp"
+#include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;

@@ -16,8 +16,8 @@
 #include "firmware/sinks/png_sequence_sink.hpp"
 #include "firmware/sinks/terminal_sink.hpp"
 #include "hal/clock.hpp"
-#include "sinks_allocation_count.hpp"
-#include "temporary_folder.hpp"
+#include "tests/firmware/sinks_allocation_count.hpp"
+#include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "random_problem.hpp"
 #include "recon/reference/reference_solver.hpp"
-#include "solve_frame.hpp"
+#include "tests/recon/random_problem.hpp"
+#include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;

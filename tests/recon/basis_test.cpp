@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "random_problem.hpp"
 #include "recon/core/dct.hpp"
 #include "recon/dct_tables.hpp"
 #include "recon/reference/reference_solver.hpp"
+#include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;

@@ -5,10 +5,10 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "random_problem.hpp"
 #include "recon/core/cholesky.hpp"
 #include "recon/core/packed_symmetric.hpp"
 #include "recon/mirror_symmetry.hpp"
+#include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "recon/reconstructor.hpp"
-#include "solve_frame.hpp"
+#include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "random_problem.hpp"
 #include "recon/core/vector_sums.hpp"
+#include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;

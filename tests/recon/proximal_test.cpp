@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "random_problem.hpp"
+#include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
 using recon::core::prox_l1_box;

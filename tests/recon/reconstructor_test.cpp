@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
-#include "random_problem.hpp"
-#include "solve_frame.hpp"
+#include "tests/recon/random_problem.hpp"
+#include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;

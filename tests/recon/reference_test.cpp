@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "random_problem.hpp"
+#include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "random_problem.hpp"
+#include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
 using hal::ErrorCode;
