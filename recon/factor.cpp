@@ -62,15 +62,17 @@ bool on_all_cores(int count, std::string_view what, const Progress& progress, Wo
 
 class BlockInverse {
  public:
-  BlockInverse(const Response& seeing, int image_rows, int image_cols, const Progress& progress)
-      : gram_(seeing), symmetry_(find_mirror_symmetry(seeing, image_rows, image_cols)), progress_(progress) {
+  BlockInverse(const Response& seeing, int image_rows, int image_cols, MetricKind metric, const Progress& progress)
+      : gram_(seeing, image_rows, image_cols, metric),
+        symmetry_(find_mirror_symmetry(seeing, image_rows, image_cols)),
+        progress_(progress) {
     find_orbits();
     find_blocks();
   }
 
   [[nodiscard]] hal::Result<void> compute(double rho) {
     const bool made = on_all_cores(static_cast<int>(orbits_.size()), "A A'", progress_, [this] {
-      return [this, scratch = std::vector<double>(static_cast<std::size_t>(gram_.cols()), 0.0),
+      return [this, scratch = gram_.make_scratch(),
               row = std::vector<double>(static_cast<std::size_t>(gram_.order()))](int orbit) mutable {
         gram_.row(orbits_[static_cast<std::size_t>(orbit)].first, scratch, row);
         fill_row(orbit, row);
@@ -204,9 +206,9 @@ class BlockInverse {
 }  // namespace
 
 template <class T>
-hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols, double rho,
-                                           const Progress& progress) {
-  BlockInverse inverse(seeing, image_rows, image_cols, progress);
+hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols, MetricKind metric,
+                                           double rho, const Progress& progress) {
+  BlockInverse inverse(seeing, image_rows, image_cols, metric, progress);
   if (auto done = inverse.compute(rho); !done) return tl::unexpected(done.error());
   const auto order = static_cast<std::size_t>(inverse.order());
   std::vector<T> packed(core::PackedSymmetric<T>::size(order));
@@ -218,7 +220,8 @@ hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_row
   return packed;
 }
 
-template hal::Result<std::vector<float>> packed_inverse(const Response&, int, int, double, const Progress&);
-template hal::Result<std::vector<double>> packed_inverse(const Response&, int, int, double, const Progress&);
+template hal::Result<std::vector<float>> packed_inverse(const Response&, int, int, MetricKind, double, const Progress&);
+template hal::Result<std::vector<double>> packed_inverse(const Response&, int, int, MetricKind, double,
+                                                         const Progress&);
 
 }  // namespace compueye::recon

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string_view>
 #include <vector>
@@ -12,19 +13,23 @@ namespace compueye::recon {
 /// `done` of `total` units of set-up work; return false to give up (error: interrupted).
 using Progress = std::function<bool(std::string_view what, double done, double total)>;
 
-/// The inverse that makes a frame cheap: (A A' + rho I)^-1 of the seeing rows, made in double, kept in float32 as a
-/// packed upper triangle by rows. Worth storing: it is the slow part of setting up a solver.
+/// K0 of the quadratic step (core/metric.hpp).
+enum class MetricKind : std::uint8_t { identity, smoothing };
+
+/// The inverse that makes a frame cheap: (A K0^-1 A' + rho I)^-1 of the seeing rows, made in double, kept in float32 as
+/// a packed upper triangle by rows. Worth storing: it is the slow part of setting up a solver.
 struct Factor {
+  MetricKind metric = MetricKind::identity;
   double rho = 0.0;
   int order = 0;               ///< number of seeing rows
   std::vector<float> inverse;  ///< order * (order + 1) / 2 values
 };
 
-/// (A A' + rho I)^-1 computed in double, packed, rounded once to T. A mirror-symmetric eye falls into its parity
+/// (A K0^-1 A' + rho I)^-1 computed in double, packed, rounded once to T. A mirror-symmetric eye falls into its parity
 /// classes, which cost a sixteenth. `seeing` has no blind rows and lies on an image_rows x image_cols picture; rho > 0.
-/// Errors: interrupted; out_of_range when A A' + rho I is not positive definite to working precision.
+/// Errors: interrupted; out_of_range when the matrix is not positive definite to working precision.
 template <class T>
 [[nodiscard]] hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols,
-                                                         double rho, const Progress& progress);
+                                                         MetricKind metric, double rho, const Progress& progress);
 
 }  // namespace compueye::recon

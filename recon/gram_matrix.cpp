@@ -1,10 +1,15 @@
 #include "recon/gram_matrix.hpp"
 
+#include <algorithm>
+
 #include "recon/core/vector_sums.hpp"
+#include "recon/dct_tables.hpp"
+#include "recon/smoothing.hpp"
 
 namespace compueye::recon {
 
-GramMatrix::GramMatrix(const Response& response) : response_(response) {
+GramMatrix::GramMatrix(const Response& response, int image_rows, int image_cols, MetricKind metric)
+    : response_(response) {
   std::int64_t entry = 0;
   for (int m = 0; m < response.rows(); ++m) {
     first_run_.push_back(runs_.size());
@@ -19,20 +24,45 @@ GramMatrix::GramMatrix(const Response& response) : response_(response) {
     });
   }
   first_run_.push_back(runs_.size());
+  if (metric == MetricKind::identity) return;
+  row_table_ = make_dct_table<double>(image_rows);
+  col_table_ = make_dct_table<double>(image_cols);
+  for (const double eigenvalue : smoothing_eigenvalues(image_rows, image_cols)) {
+    inverse_eigenvalues_.push_back(1.0 / eigenvalue);
+  }
+  metric_ = {inverse_eigenvalues_.data(),
+             {{static_cast<std::size_t>(image_rows), row_table_.data()},
+              {static_cast<std::size_t>(image_cols), col_table_.data()}}};
 }
 
-void GramMatrix::row(int i, std::span<double> scratch, std::span<double> out) const {
-  response_.for_each_in_row(i, [&](std::int32_t n, double v) { scratch[static_cast<std::size_t>(n)] = v; });
+GramMatrix::Scratch GramMatrix::make_scratch() const {
+  const auto pixels = static_cast<std::size_t>(response_.cols());
+  Scratch scratch{std::vector<double>(pixels, 0.0), {}, {}};
+  if (!metric_.is_identity()) {
+    scratch.coefficients.resize(pixels);
+    scratch.strips.resize(core::dct_scratch_size(metric_.dct.rows.length, metric_.dct.cols.length));
+  }
+  return scratch;
+}
+
+void GramMatrix::row(int i, Scratch& scratch, std::span<double> out) const {
+  std::vector<double>& picture = scratch.picture;
+  response_.for_each_in_row(i, [&](std::int32_t n, double v) { picture[static_cast<std::size_t>(n)] = v; });
+  core::apply_inverse(metric_, picture.data(), scratch.coefficients.data(), scratch.strips.data());
   const double* values = response_.values().data();
   for (std::size_t j = 0; j < out.size(); ++j) {
     double sum = 0.0;
     for (std::size_t r = first_run_[j]; r < first_run_[j + 1]; ++r) {
-      sum += core::dot(values + runs_[r].entry, scratch.data() + runs_[r].column,
+      sum += core::dot(values + runs_[r].entry, picture.data() + runs_[r].column,
                        static_cast<std::size_t>(runs_[r].length));
     }
     out[j] = sum;
   }
-  response_.for_each_in_row(i, [&](std::int32_t n, double) { scratch[static_cast<std::size_t>(n)] = 0.0; });
+  if (metric_.is_identity()) {
+    response_.for_each_in_row(i, [&](std::int32_t n, double) { picture[static_cast<std::size_t>(n)] = 0.0; });
+  } else {
+    std::fill(picture.begin(), picture.end(), 0.0);
+  }
 }
 
 }  // namespace compueye::recon

@@ -4,19 +4,30 @@
 #include <span>
 #include <vector>
 
+#include "recon/core/metric.hpp"
+#include "recon/factor.hpp"
 #include "recon/response.hpp"
 
 namespace compueye::recon {
 
-/// Entries of A A' in double, a row at a time. Receptive fields are convex, so a sparse row is a few runs of
+/// Entries of A K0^-1 A' in double, a row at a time. Receptive fields are convex, so a sparse row is a few runs of
 /// neighbouring pixels: products go run by run.
 class GramMatrix {
  public:
-  explicit GramMatrix(const Response& response);
+  GramMatrix(const GramMatrix&) = delete;
+  GramMatrix& operator=(const GramMatrix&) = delete;
+  GramMatrix(const Response& response, int image_rows, int image_cols, MetricKind metric);
 
-  /// out[j] = sum_n a_in a_jn for all j; `scratch` has cols() zeros and is left so. Safe from several threads, each
-  /// with its own scratch.
-  void row(int i, std::span<double> scratch, std::span<double> out) const;
+  /// What row() works in, one a thread.
+  struct Scratch {
+    std::vector<double> picture;  // all zero between calls
+    std::vector<double> coefficients;
+    std::vector<double> strips;
+  };
+  [[nodiscard]] Scratch make_scratch() const;
+
+  /// out[j] = entry (i, j) for all j. Safe from several threads, each with its own scratch.
+  void row(int i, Scratch& scratch, std::span<double> out) const;
 
   [[nodiscard]] int order() const noexcept { return response_.rows(); }
   [[nodiscard]] int cols() const noexcept { return response_.cols(); }
@@ -31,6 +42,10 @@ class GramMatrix {
   const Response& response_;
   std::vector<Run> runs_;
   std::vector<std::size_t> first_run_;  // M + 1
+  std::vector<double> row_table_;
+  std::vector<double> col_table_;
+  std::vector<double> inverse_eigenvalues_;
+  core::Metric<double> metric_;
 };
 
 }  // namespace compueye::recon

@@ -11,7 +11,9 @@
 #include "recon/core/tikhonov.hpp"
 #include "recon/core/workspace.hpp"
 #include "recon/dct_tables.hpp"
+#include "recon/fourier_tables.hpp"
 #include "recon/penalty_rule.hpp"
+#include "recon/smoothing.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -28,13 +30,14 @@ struct OwnedTables {
   std::vector<T> values;
   std::vector<std::uint32_t> row_start;
   std::vector<std::int32_t> columns;
-  std::vector<T> dct_rows;
-  std::vector<T> dct_cols;
+  std::vector<T> row_table;  // of the basis, or of the metric's DCT
+  std::vector<T> col_table;
+  std::vector<T> metric;
   std::vector<T> inverse;
   core::FrameProblem<T> problem;
 
   [[nodiscard]] std::size_t bytes() const noexcept {
-    return (values.size() + dct_rows.size() + dct_cols.size() + inverse.size()) * sizeof(T) +
+    return (values.size() + row_table.size() + col_table.size() + metric.size() + inverse.size()) * sizeof(T) +
            (row_start.size() + columns.size()) * sizeof(std::uint32_t);
   }
 };
@@ -113,11 +116,26 @@ void fill_operator(const Response& seeing, OwnedTables<T>& tables) {
 }
 
 template <class T>
-void fill_basis(int image_rows, int image_cols, OwnedTables<T>& tables) {
-  tables.dct_rows = make_dct_table<T>(image_rows);
-  tables.dct_cols = make_dct_table<T>(image_cols);
-  tables.problem.psi.rows = {static_cast<std::size_t>(image_rows), tables.dct_rows.data()};
-  tables.problem.psi.cols = {static_cast<std::size_t>(image_cols), tables.dct_cols.data()};
+void fill_basis(BasisKind kind, int image_rows, int image_cols, OwnedTables<T>& tables) {
+  const auto rows = static_cast<std::size_t>(image_rows), cols = static_cast<std::size_t>(image_cols);
+  core::Basis<T>& psi = tables.problem.psi;
+  psi.kind = kind;
+  psi.rows = rows;
+  psi.cols = cols;
+  if (kind == BasisKind::dft) {
+    tables.row_table = make_fourier_table<T>(image_rows);
+    tables.col_table = make_fourier_table<T>(image_cols);
+    psi.fourier = {rows, cols, tables.row_table.data(), tables.col_table.data()};
+  }
+  if (kind != BasisKind::dct && kind != BasisKind::tv) return;
+  tables.row_table = make_dct_table<T>(image_rows);
+  tables.col_table = make_dct_table<T>(image_cols);
+  psi.dct = {{rows, tables.row_table.data()}, {cols, tables.col_table.data()}};
+  if (kind != BasisKind::tv) return;
+  for (const double eigenvalue : smoothing_eigenvalues(image_rows, image_cols)) {
+    tables.metric.push_back(static_cast<T>(1.0 / eigenvalue));
+  }
+  tables.problem.metric = {tables.metric.data(), psi.dct};
 }
 
 template <class T>
@@ -154,7 +172,7 @@ struct Reconstructor::Tables {
     OwnedTables<T>& tables = by_precision.template emplace<OwnedTables<T>>();
     const Response sees = response.select_rows(seeing);
     fill_operator(sees, tables);
-    fill_basis(image_rows, image_cols, tables);
+    fill_basis(objective.basis, image_rows, image_cols, tables);
     fill_objective(objective, plan, tables.problem);
     tables.problem.seeing = seeing.data();
     tables.problem.channels = static_cast<std::size_t>(channels);
@@ -162,19 +180,21 @@ struct Reconstructor::Tables {
     tables.problem.image_cols = static_cast<std::size_t>(image_cols);
     tables.problem.max_reweighted = static_cast<std::size_t>(plan.max_reweighted);
     tables.problem.inverse.order = seeing.size();
+    const MetricKind metric = objective.basis == BasisKind::tv ? MetricKind::smoothing : MetricKind::identity;
+    factor.metric = metric;
     factor.rho = plan.rho;
     factor.order = static_cast<int>(seeing.size());
     if constexpr (std::is_same_v<T, float>) {
       if (stored) {
         factor.inverse = std::move(stored->inverse);
       } else {
-        auto made = packed_inverse<float>(sees, image_rows, image_cols, plan.rho, progress);
+        auto made = packed_inverse<float>(sees, image_rows, image_cols, metric, plan.rho, progress);
         if (!made) return tl::unexpected(made.error());
         factor.inverse = std::move(*made);
       }
       tables.problem.inverse.values = factor.inverse.data();
     } else {
-      auto made = packed_inverse<double>(sees, image_rows, image_cols, plan.rho, progress);
+      auto made = packed_inverse<double>(sees, image_rows, image_cols, metric, plan.rho, progress);
       if (!made) return tl::unexpected(made.error());
       tables.inverse = std::move(*made);
       tables.problem.inverse.values = tables.inverse.data();
@@ -183,7 +203,9 @@ struct Reconstructor::Tables {
   }
 
   [[nodiscard]] hal::Result<void> check_stored(const Factor& stored) const {
-    const bool fits = stored.rho == plan.rho && stored.order == static_cast<int>(seeing.size()) &&
+    const MetricKind metric = objective.basis == BasisKind::tv ? MetricKind::smoothing : MetricKind::identity;
+    const bool fits = stored.metric == metric && stored.rho == plan.rho &&
+                      stored.order == static_cast<int>(seeing.size()) &&
                       stored.inverse.size() == core::PackedSymmetric<float>::size(seeing.size());
     if (fits) return {};
     return fail(ErrorCode::stale, "factor",

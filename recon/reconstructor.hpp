@@ -18,7 +18,7 @@ enum class ConstraintKind : std::uint8_t { none, nonnegative, box };
 /// min over x of 1/2 ||W^(1/2)(Ax-y)||^2 + lambda ||Psi x||_1 subject to the constraint (tikhonov: + lambda/2 ||x||^2
 /// instead of the l1 term). Intensities are in units of display white.
 struct Objective {
-  BasisKind basis = BasisKind::identity;  ///< Psi; dct = orthonormal 2-D DCT-II
+  BasisKind basis = BasisKind::identity;  ///< Psi, see core/basis.hpp
   ConstraintKind constraint = ConstraintKind::none;
   double lo = 0.0;  ///< box only; lo < hi
   double hi = 1.0;

@@ -30,6 +30,10 @@ struct Copy {
     u = memory.take<T>(n);
   }
 
+  void clear(std::size_t n) noexcept {
+    for (std::size_t k = 0; k < n; ++k) z[k] = u[k] = T(0);
+  }
+
   void update(const T* x, std::size_t n, T relaxation) noexcept {
     relaxed_prox_step(x, z, u, n, relaxation, threshold, lo, hi);
   }
@@ -51,13 +55,15 @@ class Admm {
         n_(problem.pixels()),
         step_(problem, memory),
         x_(memory.take<T>(n_)),
-        before_(memory.take<T>(n_)),
         sparse_basis_(problem.point.basis != BasisKind::identity),
-        pixel_copy_(!sparse_basis_ || problem.constrained) {
+        smooth_(!problem.metric.is_identity()),
+        pixel_copy_(!sparse_basis_ || problem.constrained || smooth_),
+        coefficient_count_(problem.psi.coefficients()),
+        before_(memory.take<T>(coefficient_count_)) {
     if (sparse_basis_) {
-      coefficients_ = memory.take<T>(n_);
-      scratch_ = memory.take<T>(dct_scratch_size(problem.image_rows, problem.image_cols));
-      in_basis_.place(n_, memory);
+      coefficients_ = memory.take<T>(coefficient_count_);
+      scratch_ = memory.take<T>(problem.psi.scratch_size());
+      in_basis_.place(coefficient_count_, memory);
     }
     if (pixel_copy_) in_pixels_.place(n_, memory);
     set_proximal_maps();
@@ -81,7 +87,8 @@ class Admm {
  private:
   void set_proximal_maps() noexcept {
     constexpr T unbounded = T(1e30);
-    const T penalty = sparse_basis_ && pixel_copy_ ? problem_.rho * T(0.5) : problem_.rho;
+    const bool shared = sparse_basis_ && pixel_copy_ && !smooth_;
+    const T penalty = shared ? problem_.rho * T(0.5) : problem_.rho;
     in_basis_.threshold = problem_.lambda / penalty;
     in_basis_.lo = -unbounded;
     in_basis_.hi = unbounded;
@@ -91,33 +98,38 @@ class Admm {
   }
 
   void clear() noexcept {
-    for (std::size_t k = 0; k < n_; ++k) {
-      if (sparse_basis_) in_basis_.z[k] = in_basis_.u[k] = T(0);
-      if (pixel_copy_) in_pixels_.z[k] = in_pixels_.u[k] = T(0);
-    }
+    if (sparse_basis_) in_basis_.clear(coefficient_count_);
+    if (pixel_copy_) in_pixels_.clear(n_);
   }
 
   void iterate(Gap* gap) noexcept {
-    if (sparse_basis_) {
-      subtract(in_basis_.z, in_basis_.u, coefficients_, n_);
-      dct_inverse(problem_.psi, coefficients_, x_, scratch_);
-      if (pixel_copy_) blend_difference(in_pixels_.z, in_pixels_.u, T(0.5), x_, n_);
-    } else {
-      subtract(in_pixels_.z, in_pixels_.u, x_, n_);
-    }
+    meet();
     step_.apply(x_);
     if (sparse_basis_) {
-      dct_forward(problem_.psi, x_, coefficients_, scratch_);
-      move(in_basis_, coefficients_, gap);
+      analyse(problem_.psi, x_, coefficients_, scratch_);
+      move(in_basis_, coefficients_, coefficient_count_, gap);
     }
-    if (pixel_copy_) move(in_pixels_, x_, gap);
+    if (pixel_copy_) move(in_pixels_, x_, n_, gap);
   }
 
-  void move(Copy<T>& copy, const T* x, Gap* gap) noexcept {
+  /// x_ = the point the copies pull to: K0^-1 (Psi' (z - u) + (z - u)) or their average, or the only one.
+  void meet() noexcept {
+    if (!sparse_basis_) return subtract(in_pixels_.z, in_pixels_.u, x_, n_);
+    subtract(in_basis_.z, in_basis_.u, coefficients_, coefficient_count_);
+    synthesise(problem_.psi, coefficients_, x_, scratch_);
+    if (smooth_) {
+      for (std::size_t k = 0; k < n_; ++k) x_[k] += in_pixels_.z[k] - in_pixels_.u[k];
+      apply_inverse(problem_.metric, x_, coefficients_, scratch_);
+    } else if (pixel_copy_) {
+      blend_difference(in_pixels_.z, in_pixels_.u, T(0.5), x_, n_);
+    }
+  }
+
+  void move(Copy<T>& copy, const T* x, std::size_t n, Gap* gap) noexcept {
     if (gap == nullptr) {
-      copy.update(x, n_, problem_.relaxation);
+      copy.update(x, n, problem_.relaxation);
     } else {
-      copy.update_and_measure(x, before_, n_, problem_.relaxation, *gap);
+      copy.update_and_measure(x, before_, n, problem_.relaxation, *gap);
     }
   }
 
@@ -126,13 +138,14 @@ class Admm {
     finite_ = all_finite(x_, n_);  // a clip would turn NaN into a number
     if (pixel_copy_) {
       for (std::size_t k = 0; k < n_; ++k) x_[k] = in_pixels_.z[k];
-      if (sparse_basis_) dct_forward(problem_.psi, x_, coefficients_, scratch_);
+      if (sparse_basis_) analyse(problem_.psi, x_, coefficients_, scratch_);
     } else {
-      dct_inverse(problem_.psi, in_basis_.z, x_, scratch_);
+      synthesise(problem_.psi, in_basis_.z, x_, scratch_);
       for (std::size_t k = 0; k < n_; ++k) coefficients_[k] = in_basis_.z[k];
     }
     const T* penalised = sparse_basis_ ? coefficients_ : x_;
-    const double penalty = static_cast<double>(problem_.lambda) * static_cast<double>(sum_of_magnitudes(penalised, n_));
+    const double penalty =
+        static_cast<double>(problem_.lambda) * static_cast<double>(sum_of_magnitudes(penalised, coefficient_count_));
     evaluate(step_, x_, penalty, info);
     const double size = gap.size > 0.0 ? gap.size : 1.0;
     info.primal_residual = square_root(gap.apart / size);
@@ -146,9 +159,11 @@ class Admm {
   std::size_t n_;
   WeightedStep<T> step_;
   T* x_;
-  T* before_;
   bool sparse_basis_;
+  bool smooth_;
   bool pixel_copy_;
+  std::size_t coefficient_count_;
+  T* before_;
   T* coefficients_ = nullptr;
   T* scratch_ = nullptr;
   Copy<T> in_basis_;

@@ -5,7 +5,7 @@
 namespace compueye::recon {
 
 enum class OperatorKind : std::uint8_t { dense, csr };
-enum class BasisKind : std::uint8_t { identity, dct };
+enum class BasisKind : std::uint8_t { identity, dct, haar, db4, dft, tv };
 enum class SolverKind : std::uint8_t { admm, tikhonov };
 enum class Precision : std::uint8_t { f32, f64 };
 

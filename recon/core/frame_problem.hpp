@@ -3,9 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "recon/core/dct.hpp"
+#include "recon/core/basis.hpp"
 #include "recon/core/frame_info.hpp"
 #include "recon/core/linear_operator.hpp"
+#include "recon/core/metric.hpp"
 #include "recon/core/packed_symmetric.hpp"
 
 namespace compueye::recon::core {
@@ -17,13 +18,14 @@ namespace compueye::recon::core {
 template <class T>
 struct FrameProblem {
   LinearOperator<T> a;                   ///< seeing rows only
-  PackedSymmetric<T> inverse;            ///< (A A' + rho I)^-1, order = a.rows
+  PackedSymmetric<T> inverse;            ///< (A K0^-1 A' + rho I)^-1, order = a.rows
   const std::int32_t* seeing = nullptr;  ///< a.rows channel numbers, ascending
   std::size_t channels = 0;              ///< M: length of y and of the weights
   std::size_t max_reweighted = 0;        ///< how many weights may differ from one in a frame
   std::size_t image_rows = 0;
   std::size_t image_cols = 0;  ///< image_rows * image_cols = a.cols
-  Dct2d<T> psi;                ///< used when point.basis is dct
+  Basis<T> psi;
+  Metric<T> metric;  ///< K0; the identity unless psi is tv
   bool constrained = false;
   T lo = T(0);  ///< -infinity where there is no bound
   T hi = T(0);  ///< +infinity where there is no bound

@@ -16,7 +16,12 @@ WeightedStep<T>::WeightedStep(const FrameProblem<T>& problem, Workspace& workspa
       index_(workspace.take<std::size_t>(problem.max_reweighted)),
       inverse_rows_(workspace.take<T>(problem.max_reweighted * problem.a.rows)),
       substitution_(workspace.take<double>(problem.max_reweighted * problem.max_reweighted)),
-      unknown_(workspace.take<double>(problem.max_reweighted)) {}
+      unknown_(workspace.take<double>(problem.max_reweighted)) {
+  if (problem.metric.is_identity()) return;
+  smooth_ = workspace.take<T>(problem.pixels());
+  coefficients_ = workspace.take<T>(problem.pixels());
+  scratch_ = workspace.take<T>(dct_scratch_size(problem.image_rows, problem.image_cols));
+}
 
 template <class T>
 bool WeightedStep<T>::begin(const float* y, const float* weights) noexcept {
@@ -78,7 +83,14 @@ void WeightedStep<T>::apply(T* v) noexcept {
     if (weights_[index_[s]] == T(0)) correction_[index_[s]] = T(0);
   }
   flush_tiny(correction_, rows);
-  adjoint_accumulate(problem_->a, correction_, v);
+  if (problem_->metric.is_identity()) {
+    adjoint_accumulate(problem_->a, correction_, v);
+  } else {
+    for (std::size_t k = 0; k < problem_->pixels(); ++k) smooth_[k] = T(0);
+    adjoint_accumulate(problem_->a, correction_, smooth_);
+    apply_inverse(problem_->metric, smooth_, coefficients_, scratch_);
+    for (std::size_t k = 0; k < problem_->pixels(); ++k) v[k] += smooth_[k];
+  }
   flush_tiny(v, problem_->pixels());
 }
 

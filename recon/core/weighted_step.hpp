@@ -9,11 +9,12 @@ namespace compueye::recon::core {
 
 /// The quadratic step of a frame, for weights that change from frame to frame while the factor stays:
 ///
-///   x = argmin 1/2 ||W^(1/2)(A x - y)||^2 + rho/2 ||x - v||^2 = v + A' (A A' + rho W^-1)^-1 (y - A v)
+///   x = argmin 1/2 ||W^(1/2)(A x - y)||^2 + rho/2 (x - v)' K0 (x - v)
+///     = v + K0^-1 A' (A K0^-1 A' + rho W^-1)^-1 (y - A v)
 ///
-/// With H = (A A' + rho I)^-1 cached and S the channels whose weight is not one, Woodbury's identity gives
+/// With H = (A K0^-1 A' + rho I)^-1 cached and S the channels whose weight is not one, Woodbury's identity gives
 ///
-///   (A A' + rho W^-1)^-1 r = H (r - E_S c),  (H_SS + D) c = (H r)_S,  D = diag(w / (rho (1 - w)))
+///   (A K0^-1 A' + rho W^-1)^-1 r = H (r - E_S c),  (H_SS + D) c = (H r)_S,  D = diag(w / (rho (1 - w)))
 ///
 /// that is: the residual of a missing channel is replaced by the value that makes it carry no information. It is
 /// exact, costs |S| M once for the rows H_S and |S|^3/6 for their factor, and |S| M more an iteration.
@@ -49,6 +50,9 @@ class WeightedStep {
   T* inverse_rows_;       // H_S, |S| x rows
   double* substitution_;  // Cholesky factor of H_SS + D
   double* unknown_;       // c
+  T* smooth_ = nullptr;   // K0^-1 A' s, when K0 is not the identity
+  T* coefficients_ = nullptr;
+  T* scratch_ = nullptr;
   std::size_t used_ = 0;
   std::size_t reweighted_ = 0;
 };

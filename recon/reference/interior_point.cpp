@@ -26,17 +26,36 @@ double step_to_boundary(const Vector& value, const Vector& change) {
   return step;
 }
 
+/// P + G' diag(mu / s) G with its factor; near the solution it is so ill-conditioned that a solve needs refinement.
+struct NormalEquations {
+  NormalEquations(const QuadraticProgram& qp, const Iterate& at, double regularisation)
+      : matrix(qp.p + qp.g.transpose() * (at.mu.array() / at.s.array()).matrix().asDiagonal() * qp.g) {
+    Matrix regular = matrix;
+    regular.diagonal().array() += regularisation;
+    factor.compute(regular);
+  }
+
+  [[nodiscard]] Vector solve(const Vector& b) const {
+    Vector x = factor.solve(b);
+    for (int k = 0; k < 3; ++k) x += factor.solve(b - matrix * x);
+    return x;
+  }
+
+  Matrix matrix;
+  Eigen::LDLT<Matrix> factor;
+};
+
 Residuals residuals(const QuadraticProgram& qp, const Iterate& at) {
   return {qp.p * at.z + qp.q + qp.g.transpose() * at.mu, qp.g * at.z + at.s - qp.h};
 }
 
 /// The Newton direction whose complementarity products become `target` - s.mu.
-Iterate direction(const QuadraticProgram& qp, const Eigen::LDLT<Matrix>& factor, const Iterate& at, const Residuals& r,
+Iterate direction(const QuadraticProgram& qp, const NormalEquations& normal, const Iterate& at, const Residuals& r,
                   const Vector& target) {
   const Vector complement = (at.s.array() * at.mu.array() - target.array()).matrix();
   const Vector scaled = ((at.mu.array() * r.primal.array() - complement.array()) / at.s.array()).matrix();
   Iterate d;
-  d.z = factor.solve(-r.dual - qp.g.transpose() * scaled);
+  d.z = normal.solve(-r.dual - qp.g.transpose() * scaled);
   d.s = -r.primal - qp.g * d.z;
   d.mu = ((-complement.array() - at.mu.array() * d.s.array()) / at.s.array()).matrix();
   return d;
@@ -57,17 +76,18 @@ QuadraticSolution solve_interior_point(const QuadraticProgram& qp, double tolera
     solution.converged = solution.gap < tolerance * scale && r.dual.cwiseAbs().maxCoeff() < tolerance * scale &&
                          r.primal.cwiseAbs().maxCoeff() < tolerance * scale;
     if (solution.converged) break;
-    Matrix normal = qp.p + qp.g.transpose() * (at.mu.array() / at.s.array()).matrix().asDiagonal() * qp.g;
-    normal.diagonal().array() += 1e-14 * scale;
-    const Eigen::LDLT<Matrix> factor(normal);
+    const NormalEquations normal(qp, at, 1e-13 * scale);
     const double mean = solution.gap / static_cast<double>(inequalities);
-    const Iterate affine = direction(qp, factor, at, r, Vector::Zero(inequalities));
+    const Iterate affine = direction(qp, normal, at, r, Vector::Zero(inequalities));
     const double affine_step = std::min(step_to_boundary(at.s, affine.s), step_to_boundary(at.mu, affine.mu));
     const double affine_mean =
         (at.s + affine_step * affine.s).dot(at.mu + affine_step * affine.mu) / static_cast<double>(inequalities);
     const double centring = (affine_mean / mean) * (affine_mean / mean) * (affine_mean / mean);
-    const Vector target = Vector::Constant(inequalities, centring * mean) - affine.s.cwiseProduct(affine.mu);
-    const Iterate d = direction(qp, factor, at, r, target);
+    // Products far below the wanted gap would only spoil the condition of the next step.
+    const double lowest = 0.1 * tolerance * scale / static_cast<double>(inequalities);
+    const Vector target =
+        Vector::Constant(inequalities, std::max(centring * mean, lowest)) - affine.s.cwiseProduct(affine.mu);
+    const Iterate d = direction(qp, normal, at, r, target);
     const double step = std::min(1.0, 0.995 * std::min(step_to_boundary(at.s, d.s), step_to_boundary(at.mu, d.mu)));
     at.z += step * d.z;
     at.s += step * d.s;

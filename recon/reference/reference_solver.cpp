@@ -22,6 +22,86 @@ Matrix dct_matrix(int n) {
   return c;
 }
 
+Matrix fourier_matrix(int n) {
+  Matrix f(n, n);
+  for (int r = 0; r < n; ++r) {
+    f(0, r) = std::sqrt(1.0 / n);
+    for (int k = 1; 2 * k < n; ++k) {
+      f(2 * k - 1, r) = std::sqrt(2.0 / n) * std::cos(2.0 * std::numbers::pi * k * r / n);
+      f(2 * k, r) = std::sqrt(2.0 / n) * std::sin(2.0 * std::numbers::pi * k * r / n);
+    }
+    if (n % 2 == 0) f(n - 1, r) = (r % 2 == 0 ? 1.0 : -1.0) * std::sqrt(1.0 / n);
+  }
+  return f;
+}
+
+/// One level: row k the low-pass filter shifted by 2k, row n/2 + k the quadrature mirror filter, periodic.
+Matrix wavelet_level(const std::vector<double>& low, int n) {
+  const int taps = static_cast<int>(low.size());
+  Matrix w = Matrix::Zero(n, n);
+  for (int k = 0; k < n / 2; ++k) {
+    for (int t = 0; t < taps; ++t) {
+      w(k, (2 * k + t) % n) += low[static_cast<std::size_t>(t)];
+      w(n / 2 + k, (2 * k + t) % n) += (t % 2 == 0 ? 1.0 : -1.0) * low[static_cast<std::size_t>(taps - 1 - t)];
+    }
+  }
+  return w;
+}
+
+/// Daubechies' filter with four vanishing moments, from the roots of its polynomial as printed in "Ten Lectures on
+/// Wavelets" (1992), table 6.1.
+std::vector<double> low_pass(BasisKind basis) {
+  if (basis == BasisKind::haar) return {std::sqrt(0.5), std::sqrt(0.5)};
+  return {0.2303778133088964,  0.7148465705529154, 0.6308807679298587, -0.0279837694168599,
+          -0.1870348117190931, 0.0308413818355607, 0.0328830116668852, -0.0105974017850690};
+}
+
+Matrix kronecker(const Matrix& a, const Matrix& b) {
+  Matrix k(a.rows() * b.rows(), a.cols() * b.cols());
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    for (Eigen::Index j = 0; j < a.cols(); ++j) k.block(i * b.rows(), j * b.cols(), b.rows(), b.cols()) = a(i, j) * b;
+  }
+  return k;
+}
+
+Matrix wavelet_matrix(BasisKind basis, int image_rows, int image_cols) {
+  const std::vector<double> low = low_pass(basis);
+  const int taps = static_cast<int>(low.size());
+  Matrix psi = Matrix::Identity(image_rows * image_cols, image_rows * image_cols);
+  for (int rows = image_rows, cols = image_cols; rows % 2 == 0 && cols % 2 == 0 && rows >= taps && cols >= taps;
+       rows /= 2, cols /= 2) {
+    Matrix down = Matrix::Identity(image_rows, image_rows), across = Matrix::Identity(image_cols, image_cols);
+    Matrix keep_down = Matrix::Zero(image_rows, image_rows), keep_across = Matrix::Zero(image_cols, image_cols);
+    keep_down.topLeftCorner(rows, rows).setIdentity();
+    keep_across.topLeftCorner(cols, cols).setIdentity();
+    down.topLeftCorner(rows, rows) = wavelet_level(low, rows);
+    across.topLeftCorner(cols, cols) = wavelet_level(low, cols);
+    const Matrix inside = kronecker(keep_down, keep_across);
+    const Matrix whole = Matrix::Identity(inside.rows(), inside.cols());
+    psi = (kronecker(down, across) * inside + (whole - inside)) * psi;
+  }
+  return psi;
+}
+
+Matrix difference_matrix(int image_rows, int image_cols) {
+  const int n = image_rows * image_cols;
+  Matrix d = Matrix::Zero(2 * n, n);
+  for (int r = 0; r < image_rows; ++r) {
+    for (int c = 0; c < image_cols; ++c) {
+      const int p = r * image_cols + c;
+      if (c + 1 < image_cols) {
+        d(p, p) = -1.0;
+        d(p, p + 1) = 1.0;
+      }
+      if (r + 1 < image_rows) {
+        d(n + p, p) = -1.0;
+        d(n + p, p + image_cols) = 1.0;
+      }
+    }
+  }
+  return d;
+}
+
 Matrix dense(const Response& response) {
   Matrix a = Matrix::Zero(response.rows(), response.cols());
   for (int m = 0; m < response.rows(); ++m) {
@@ -48,7 +128,7 @@ Vector usable_samples(std::span<const double> y, const Vector& w) {
 QuadraticProgram quadratic_program(const Matrix& a, const Vector& y, const Vector& w, const Matrix& psi,
                                    const Objective& objective) {
   const Eigen::Index n = a.cols();
-  const Eigen::Index t = objective.lambda > 0.0 ? n : 0;
+  const Eigen::Index t = objective.lambda > 0.0 ? psi.rows() : 0;
   const bool upper = objective.constraint == ConstraintKind::box;
   const bool lower = objective.constraint != ConstraintKind::none;
   QuadraticProgram qp;
@@ -59,10 +139,10 @@ QuadraticProgram quadratic_program(const Matrix& a, const Vector& y, const Vecto
   qp.g = Matrix::Zero(2 * t + (upper ? n : 0) + (lower ? n : 0), n + t);
   qp.h = Vector::Zero(qp.g.rows());
   if (t > 0) {
-    qp.g.block(0, 0, n, n) = psi;
-    qp.g.block(n, 0, n, n) = -psi;
-    qp.g.block(0, n, n, n) = -Matrix::Identity(n, n);
-    qp.g.block(n, n, n, n) = -Matrix::Identity(n, n);
+    qp.g.block(0, 0, t, n) = psi;
+    qp.g.block(t, 0, t, n) = -psi;
+    qp.g.block(0, n, t, t) = -Matrix::Identity(t, t);
+    qp.g.block(t, n, t, t) = -Matrix::Identity(t, t);
   }
   if (upper) {
     qp.g.block(2 * t, 0, n, n) = Matrix::Identity(n, n);
@@ -79,15 +159,20 @@ QuadraticProgram quadratic_program(const Matrix& a, const Vector& y, const Vecto
 
 Matrix basis_matrix(BasisKind basis, int image_rows, int image_cols) {
   const int n = image_rows * image_cols;
-  if (basis == BasisKind::identity) return Matrix::Identity(n, n);
-  const Matrix down = dct_matrix(image_rows), across = dct_matrix(image_cols);
-  Matrix psi(n, n);
-  for (int k = 0; k < n; ++k) {
-    for (int p = 0; p < n; ++p) {
-      psi(k, p) = down(k / image_cols, p / image_cols) * across(k % image_cols, p % image_cols);
-    }
+  switch (basis) {
+    case BasisKind::identity:
+      return Matrix::Identity(n, n);
+    case BasisKind::dct:
+      return kronecker(dct_matrix(image_rows), dct_matrix(image_cols));
+    case BasisKind::dft:
+      return kronecker(fourier_matrix(image_rows), fourier_matrix(image_cols));
+    case BasisKind::haar:
+    case BasisKind::db4:
+      return wavelet_matrix(basis, image_rows, image_cols);
+    case BasisKind::tv:
+      return difference_matrix(image_rows, image_cols);
   }
-  return psi;
+  return {};
 }
 
 ReferenceResult solve_reference(const Response& response, int image_rows, int image_cols, const Objective& objective,

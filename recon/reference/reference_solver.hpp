@@ -8,7 +8,7 @@
 
 namespace compueye::recon::reference {
 
-/// Psi as a dense matrix, from the definition (Ahmed, Natarajan & Rao 1974), sharing nothing with the frame path.
+/// Psi as a dense matrix, from its definition, sharing nothing with the frame path.
 [[nodiscard]] Eigen::MatrixXd basis_matrix(BasisKind basis, int image_rows, int image_cols);
 
 struct ReferenceResult {
@@ -19,7 +19,7 @@ struct ReferenceResult {
 };
 
 /// The Objective's minimiser by an interior point method in double: |Psi x| <= t turns it into a quadratic program.
-/// Dense in 2 N variables: for N up to a few hundred. `weights` empty: all one.
+/// Dense in 2 N variables (3 N for tv): for N up to a few hundred. `weights` empty: all one.
 [[nodiscard]] ReferenceResult solve_reference(const Response& response, int image_rows, int image_cols,
                                               const Objective& objective, std::span<const double> y,
                                               std::span<const double> weights = {});

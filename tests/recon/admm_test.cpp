@@ -80,7 +80,15 @@ TEST_CASE("admm reaches the reference's objective to 1e-4 on every kind of probl
                                    {BasisKind::identity, ConstraintKind::box, 0.5},
                                    {BasisKind::dct, ConstraintKind::none, 0.1},
                                    {BasisKind::dct, ConstraintKind::nonnegative, 0.2},
-                                   {BasisKind::dct, ConstraintKind::box, 0.02}}) {
+                                   {BasisKind::dct, ConstraintKind::box, 0.02},
+                                   {BasisKind::haar, ConstraintKind::none, 0.1},
+                                   {BasisKind::haar, ConstraintKind::box, 0.05},
+                                   {BasisKind::db4, ConstraintKind::nonnegative, 0.05},
+                                   {BasisKind::dft, ConstraintKind::none, 0.2},
+                                   {BasisKind::dft, ConstraintKind::box, 0.1},
+                                   {BasisKind::tv, ConstraintKind::none, 0.1},
+                                   {BasisKind::tv, ConstraintKind::nonnegative, 0.05},
+                                   {BasisKind::tv, ConstraintKind::box, 0.2}}) {
       CAPTURE(problem.name);
       CAPTURE(static_cast<int>(setting.basis));
       CAPTURE(static_cast<int>(setting.constraint));

@@ -43,7 +43,7 @@ Eigen::MatrixXd direct_inverse(const recon::Response& a, double rho) {
 }
 
 void check_against_direct(const recon::Response& a, int rows, int cols, double rho) {
-  const auto packed = recon::packed_inverse<double>(a, rows, cols, rho, {});
+  const auto packed = recon::packed_inverse<double>(a, rows, cols, recon::MetricKind::identity, rho, {});
   REQUIRE(packed.has_value());
   const Eigen::MatrixXd expected = direct_inverse(a, rho);
   const recon::core::PackedSymmetric<double> h{static_cast<std::size_t>(a.rows()), packed->data()};
@@ -82,16 +82,17 @@ TEST_CASE("an eye with one mirror axis or none is recognised as such") {
 
 TEST_CASE("set-up can be interrupted and reports its progress") {
   const recon::Response a = lattice_response(4, 4, 8, 8, 0.0);
-  const auto stopped =
-      recon::packed_inverse<float>(a, 8, 8, 0.1, [](std::string_view, double, double) { return false; });
+  const auto stopped = recon::packed_inverse<float>(a, 8, 8, recon::MetricKind::identity, 0.1,
+                                                    [](std::string_view, double, double) { return false; });
   REQUIRE_FALSE(stopped.has_value());
   CHECK(stopped.error().code == hal::ErrorCode::interrupted);
   double last = 0.0;
-  const auto made = recon::packed_inverse<float>(a, 8, 8, 0.1, [&](std::string_view, double done, double total) {
-    CHECK(done <= total);
-    last = done / total;
-    return true;
-  });
+  const auto made = recon::packed_inverse<float>(a, 8, 8, recon::MetricKind::identity, 0.1,
+                                                 [&](std::string_view, double done, double total) {
+                                                   CHECK(done <= total);
+                                                   last = done / total;
+                                                   return true;
+                                                 });
   CHECK(made.has_value());
   CHECK(last == 1.0);
 }
