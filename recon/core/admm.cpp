@@ -4,6 +4,7 @@
 #include "recon/core/proximal.hpp"
 #include "recon/core/square_root.hpp"
 #include "recon/core/vector_sums.hpp"
+#include "recon/core/weighted_step.hpp"
 
 namespace compueye::recon::core {
 namespace {
@@ -146,7 +147,7 @@ class Admm {
     const T* penalised = sparse_basis_ ? coefficients_ : x_;
     const double penalty =
         static_cast<double>(problem_.lambda) * static_cast<double>(sum_of_magnitudes(penalised, coefficient_count_));
-    evaluate(step_, x_, penalty, info);
+    evaluate(step_.samples(), x_, penalty, step_.row_scratch(), info);
     const double size = gap.size > 0.0 ? gap.size : 1.0;
     info.primal_residual = square_root(gap.apart / size);
     info.dual_residual = square_root(gap.moved / size);

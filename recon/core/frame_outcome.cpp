@@ -20,19 +20,19 @@ void deliver(const T* solution, bool usable, std::size_t n, FrameInfo& info, flo
 }
 
 template <class T>
-void evaluate(WeightedStep<T>& step, const T* solution, double penalty, FrameInfo& info) noexcept {
-  const double squared = step.squared_residual(solution);
+void evaluate(const FrameSamples<T>& samples, const T* solution, double penalty, T* scratch, FrameInfo& info) noexcept {
+  const double squared = samples.squared_residual(solution, scratch);
   info.residual = square_root(squared);
   info.objective = 0.5 * squared + penalty;
-  info.channels_used = static_cast<int>(step.channels_used());
-  info.channels_reweighted = static_cast<int>(step.channels_reweighted());
+  info.channels_used = static_cast<int>(samples.channels_used());
+  info.channels_reweighted = static_cast<int>(samples.channels_reweighted());
 }
 
 template FrameInfo begin_outcome(const FrameProblem<float>&) noexcept;
 template FrameInfo begin_outcome(const FrameProblem<double>&) noexcept;
 template void deliver(const float*, bool, std::size_t, FrameInfo&, float*) noexcept;
 template void deliver(const double*, bool, std::size_t, FrameInfo&, float*) noexcept;
-template void evaluate(WeightedStep<float>&, const float*, double, FrameInfo&) noexcept;
-template void evaluate(WeightedStep<double>&, const double*, double, FrameInfo&) noexcept;
+template void evaluate(const FrameSamples<float>&, const float*, double, float*, FrameInfo&) noexcept;
+template void evaluate(const FrameSamples<double>&, const double*, double, double*, FrameInfo&) noexcept;
 
 }  // namespace compueye::recon::core

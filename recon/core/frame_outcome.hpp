@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "recon/core/frame_problem.hpp"
-#include "recon/core/weighted_step.hpp"
+#include "recon/core/frame_samples.hpp"
 
 namespace compueye::recon::core {
 
@@ -15,8 +15,9 @@ template <class T>
 template <class T>
 void deliver(const T* solution, bool usable, std::size_t n, FrameInfo& info, float* x) noexcept;
 
-/// Fills in the residual, the channel counts and the objective with the given penalty term.
+/// Fills in the residual, the channel counts and the objective with the given penalty term; `scratch` takes
+/// problem.a.rows values.
 template <class T>
-void evaluate(WeightedStep<T>& step, const T* solution, double penalty, FrameInfo& info) noexcept;
+void evaluate(const FrameSamples<T>& samples, const T* solution, double penalty, T* scratch, FrameInfo& info) noexcept;
 
 }  // namespace compueye::recon::core

@@ -2,6 +2,7 @@
 
 #include "recon/core/frame_outcome.hpp"
 #include "recon/core/vector_sums.hpp"
+#include "recon/core/weighted_step.hpp"
 
 namespace compueye::recon::core {
 
@@ -19,7 +20,8 @@ FrameInfo solve_tikhonov(const FrameProblem<T>& problem, const float* y, const f
     info.health = Health::converged;
     info.iterations = 1;
     const double squared_norm = static_cast<double>(dot(solution, solution, problem.pixels()));
-    evaluate(step, solution, 0.5 * static_cast<double>(problem.lambda) * squared_norm, info);
+    evaluate(step.samples(), solution, 0.5 * static_cast<double>(problem.lambda) * squared_norm, step.row_scratch(),
+             info);
   }
   deliver(solution, usable, problem.pixels(), info, x);
   return info;

@@ -9,8 +9,7 @@ namespace compueye::recon::core {
 template <class T>
 WeightedStep<T>::WeightedStep(const FrameProblem<T>& problem, Workspace& workspace) noexcept
     : problem_(&problem),
-      samples_(workspace.take<T>(problem.a.rows)),
-      weights_(workspace.take<T>(problem.a.rows)),
+      samples_(problem, workspace),
       residual_(workspace.take<T>(problem.a.rows)),
       correction_(workspace.take<T>(problem.a.rows)),
       index_(workspace.take<std::size_t>(problem.max_reweighted)),
@@ -25,26 +24,12 @@ WeightedStep<T>::WeightedStep(const FrameProblem<T>& problem, Workspace& workspa
 
 template <class T>
 bool WeightedStep<T>::begin(const float* y, const float* weights) noexcept {
-  used_ = 0;
   reweighted_ = 0;
-  if (!gather(y, weights) || !all_finite(samples_, problem_->a.rows)) return false;
-  return factor_substitution();
-}
-
-template <class T>
-bool WeightedStep<T>::gather(const float* y, const float* weights) noexcept {
+  if (!samples_.gather(y, weights) || samples_.channels_reweighted() > problem_->max_reweighted) return false;
   for (std::size_t i = 0; i < problem_->a.rows; ++i) {
-    const auto channel = static_cast<std::size_t>(problem_->seeing[i]);
-    const T weight = weights == nullptr ? T(1) : static_cast<T>(weights[channel]);
-    if (!(weight >= T(0) && weight <= T(1))) return false;
-    weights_[i] = weight;
-    samples_[i] = weight > T(0) ? static_cast<T>(y[channel]) : T(0);
-    if (weight > T(0)) ++used_;
-    if (weight == T(1)) continue;
-    if (reweighted_ == problem_->max_reweighted) return false;
-    index_[reweighted_++] = i;
+    if (samples_.weights()[i] != T(1)) index_[reweighted_++] = i;
   }
-  return true;
+  return factor_substitution();
 }
 
 template <class T>
@@ -54,7 +39,7 @@ bool WeightedStep<T>::factor_substitution() noexcept {
     T* row = inverse_rows_ + s * problem_->a.rows;
     expand_row(problem_->inverse, index_[s], row);
     for (std::size_t t = 0; t <= s; ++t) substitution_[s * n + t] = static_cast<double>(row[index_[t]]);
-    const double weight = static_cast<double>(weights_[index_[s]]);
+    const double weight = static_cast<double>(samples_.weights()[index_[s]]);
     substitution_[s * n + s] += weight / (static_cast<double>(problem_->rho) * (1.0 - weight));
   }
   return n == 0 || cholesky_factor(substitution_, n);
@@ -72,15 +57,12 @@ void WeightedStep<T>::substitute() noexcept {
 template <class T>
 void WeightedStep<T>::apply(T* v) noexcept {
   const std::size_t rows = problem_->a.rows;
-  forward(problem_->a, v, residual_);
-  for (std::size_t i = 0; i < rows; ++i) {
-    residual_[i] = weights_[i] > T(0) ? samples_[i] - residual_[i] : T(0);
-  }
+  samples_.residual(v, residual_);
   if (reweighted_ > 0) substitute();
   flush_tiny(residual_, rows);
   multiply(problem_->inverse, residual_, correction_);
   for (std::size_t s = 0; s < reweighted_; ++s) {
-    if (weights_[index_[s]] == T(0)) correction_[index_[s]] = T(0);
+    if (samples_.weights()[index_[s]] == T(0)) correction_[index_[s]] = T(0);
   }
   flush_tiny(correction_, rows);
   if (problem_->metric.is_identity()) {
@@ -92,16 +74,6 @@ void WeightedStep<T>::apply(T* v) noexcept {
     for (std::size_t k = 0; k < problem_->pixels(); ++k) v[k] += smooth_[k];
   }
   flush_tiny(v, problem_->pixels());
-}
-
-template <class T>
-double WeightedStep<T>::squared_residual(const T* x) noexcept {
-  forward(problem_->a, x, residual_);
-  for (std::size_t i = 0; i < problem_->a.rows; ++i) {
-    residual_[i] = weights_[i] > T(0) ? residual_[i] - samples_[i] : T(0);
-    correction_[i] = weights_[i] * residual_[i];
-  }
-  return static_cast<double>(dot(residual_, correction_, problem_->a.rows));
 }
 
 template class WeightedStep<float>;

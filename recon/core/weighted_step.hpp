@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "recon/core/frame_problem.hpp"
+#include "recon/core/frame_samples.hpp"
 #include "recon/core/workspace.hpp"
 
 namespace compueye::recon::core {
@@ -23,27 +24,23 @@ class WeightedStep {
  public:
   WeightedStep(const FrameProblem<T>& problem, Workspace& workspace) noexcept;
 
-  /// Takes the frame's samples: `y` and `weights` have problem.channels entries, weights null means all one.
-  /// False when y is not finite at a channel in use, a weight is outside 0..1 or too many differ from one.
+  /// Takes the frame's samples and weights, see FrameSamples::gather(). False too when more weights than planned differ
+  /// from one.
   [[nodiscard]] bool begin(const float* y, const float* weights) noexcept;
 
   /// v becomes x.
   void apply(T* v) noexcept;
 
-  /// ||W^(1/2)(A x - y)||^2
-  [[nodiscard]] double squared_residual(const T* x) noexcept;
-
-  [[nodiscard]] std::size_t channels_used() const noexcept { return used_; }
-  [[nodiscard]] std::size_t channels_reweighted() const noexcept { return reweighted_; }
+  [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return samples_; }
+  /// problem.a.rows values that are free between calls of apply().
+  [[nodiscard]] T* row_scratch() noexcept { return residual_; }
 
  private:
-  [[nodiscard]] bool gather(const float* y, const float* weights) noexcept;
   [[nodiscard]] bool factor_substitution() noexcept;
   void substitute() noexcept;
 
   const FrameProblem<T>* problem_;
-  T* samples_;
-  T* weights_;
+  FrameSamples<T> samples_;
   T* residual_;
   T* correction_;
   std::size_t* index_;    // S, positions among the seeing rows
@@ -53,7 +50,6 @@ class WeightedStep {
   T* smooth_ = nullptr;   // K0^-1 A' s, when K0 is not the identity
   T* coefficients_ = nullptr;
   T* scratch_ = nullptr;
-  std::size_t used_ = 0;
   std::size_t reweighted_ = 0;
 };
 
