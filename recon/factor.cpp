@@ -6,12 +6,14 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <thread>
 
 #include "recon/core/packed_symmetric.hpp"
 #include "recon/gram_matrix.hpp"
 #include "recon/mirror_symmetry.hpp"
+#include "recon/number_text.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -33,7 +35,23 @@ struct Orbit {
 struct ParityBlock {
   std::vector<int> position;  // orbit -> index in the block, -1 when the class has no such component
   Matrix matrix;
+  double norm = 0.0;          // of A A' + rho I in this class
+  double inverse_norm = 0.0;  // and of its inverse
 };
+
+/// Largest eigenvalue of a positive definite matrix, from below and to a few per cent, which is all a limit needs.
+double largest_eigenvalue(const Matrix& matrix) {
+  // Neither constant nor alternating, so that it is orthogonal to no smooth eigenvector.
+  Eigen::VectorXd v(matrix.rows());
+  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = 1.0 + static_cast<double>(i * 7 % 13) / 13.0;
+  double norm = 0.0;
+  for (int k = 0; k < 20; ++k) {
+    v.normalize();
+    v = (matrix.selfadjointView<Eigen::Lower>() * v).eval();
+    norm = v.norm();
+  }
+  return norm;
+}
 
 /// Calls work(i) for i = 0 .. count-1 on all cores while this thread reports; false when the user gave up.
 template <class Work>
@@ -70,7 +88,8 @@ class BlockInverse {
     find_blocks();
   }
 
-  [[nodiscard]] hal::Result<void> compute(double rho) {
+  /// `rounding` is the relative rounding error of the numbers that the inverse will be kept in.
+  [[nodiscard]] hal::Result<void> compute(double rho, double rounding) {
     const bool made = on_all_cores(static_cast<int>(orbits_.size()), "A A'", progress_, [this] {
       return [this, scratch = gram_.make_scratch(),
               row = std::vector<double>(static_cast<std::size_t>(gram_.order()))](int orbit) mutable {
@@ -82,17 +101,11 @@ class BlockInverse {
     std::atomic<bool> definite{true};
     const bool inverted = on_all_cores(static_cast<int>(blocks_.size()), "inverse", progress_, [this, rho, &definite] {
       return [this, rho, &definite](int b) {
-        if (!invert(blocks_[static_cast<std::size_t>(b)].matrix, rho)) definite = false;
+        if (!invert(blocks_[static_cast<std::size_t>(b)], rho)) definite = false;
       };
     });
     if (!inverted) return interrupted();
-    if (!definite) {
-      return hal::fail(hal::ErrorCode::out_of_range, "rho",
-                       "is " + std::to_string(rho) +
-                           ", too small for this response: A A' + rho I is not positive definite in double precision; "
-                           "choose a larger --lambda or rho");
-    }
-    return {};
+    return check_condition(definite, rho, rounding);
   }
 
   /// Row i of the inverse from column i on, into `out`.
@@ -184,15 +197,32 @@ class BlockInverse {
     }
   }
 
-  [[nodiscard]] static bool invert(Matrix& matrix, double rho) {
+  [[nodiscard]] static bool invert(ParityBlock& block, double rho) {
+    Matrix& matrix = block.matrix;
     if (matrix.size() == 0) return true;
     matrix.diagonal().array() += rho;
+    block.norm = largest_eigenvalue(matrix);
     Eigen::LLT<Eigen::Ref<Matrix>> factor(matrix);
     if (factor.info() != Eigen::Success) return false;
     Matrix inverse = Matrix::Identity(matrix.rows(), matrix.cols());
     factor.solveInPlace(inverse);
     matrix = 0.5 * (inverse + inverse.transpose());
+    block.inverse_norm = largest_eigenvalue(matrix);
     return matrix.allFinite();
+  }
+
+  /// Rounding the inverse moves its eigenvalues by `rounding` of the largest: beyond the smallest, it is noise.
+  [[nodiscard]] hal::Result<void> check_condition(bool definite, double rho, double rounding) const {
+    double norm = 0.0, inverse_norm = 0.0;
+    for (const ParityBlock& block : blocks_) {
+      norm = std::max(norm, block.norm);
+      inverse_norm = std::max(inverse_norm, block.inverse_norm);
+    }
+    if (definite && norm * inverse_norm * rounding < 0.5) return {};
+    return hal::fail(hal::ErrorCode::out_of_range, "rho",
+                     "is " + number_text(rho) + ", too small for this response (||A||^2 is " + number_text(norm) +
+                         ") at this precision; expected " + number_text(4.0 * rounding * norm) +
+                         " or more (for tikhonov, rho is lambda), or double precision");
   }
 
   GramMatrix gram_;
@@ -209,7 +239,8 @@ template <class T>
 hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols, MetricKind metric,
                                            double rho, const Progress& progress) {
   BlockInverse inverse(seeing, image_rows, image_cols, metric, progress);
-  if (auto done = inverse.compute(rho); !done) return tl::unexpected(done.error());
+  constexpr double rounding = 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon());
+  if (auto done = inverse.compute(rho, rounding); !done) return tl::unexpected(done.error());
   const auto order = static_cast<std::size_t>(inverse.order());
   std::vector<T> packed(core::PackedSymmetric<T>::size(order));
   T* row = packed.data();

@@ -27,7 +27,8 @@ struct Factor {
 
 /// (A K0^-1 A' + rho I)^-1 computed in double, packed, rounded once to T. A mirror-symmetric eye falls into its parity
 /// classes, which cost a sixteenth. `seeing` has no blind rows and lies on an image_rows x image_cols picture; rho > 0.
-/// Errors: interrupted; out_of_range when the matrix is not positive definite to working precision.
+/// Errors: interrupted; out_of_range when rho is too small for the matrix to be inverted in double or its inverse to
+/// be kept in T (condition number times rounding error of T above a half).
 template <class T>
 [[nodiscard]] hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols,
                                                          MetricKind metric, double rho, const Progress& progress);

@@ -1,7 +1,9 @@
 #include "recon/reconstructor.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <variant>
@@ -12,6 +14,7 @@
 #include "recon/core/workspace.hpp"
 #include "recon/dct_tables.hpp"
 #include "recon/fourier_tables.hpp"
+#include "recon/number_text.hpp"
 #include "recon/penalty_rule.hpp"
 #include "recon/smoothing.hpp"
 
@@ -43,7 +46,7 @@ struct OwnedTables {
 };
 
 hal::Result<void> out_of_range(const char* what, double value, const char* expected) {
-  return fail(ErrorCode::out_of_range, what, "is " + std::to_string(value) + ", expected " + expected);
+  return fail(ErrorCode::out_of_range, what, "is " + number_text(value) + ", expected " + expected);
 }
 
 hal::Result<void> check_objective(const Objective& objective) {
@@ -53,7 +56,7 @@ hal::Result<void> check_objective(const Objective& objective) {
   const bool ordered = std::isfinite(objective.lo) && std::isfinite(objective.hi) && objective.lo < objective.hi;
   if (objective.constraint == ConstraintKind::box && !ordered) {
     return fail(ErrorCode::out_of_range, "box",
-                "is [" + std::to_string(objective.lo) + ", " + std::to_string(objective.hi) +
+                "is [" + number_text(objective.lo) + ", " + number_text(objective.hi) +
                     "], expected two finite numbers with the lower first");
   }
   return {};
@@ -83,11 +86,40 @@ hal::Result<void> check_pair(const Objective& objective, const Plan& plan) {
   return {};
 }
 
+/// With x in units of white and y in those of A, squares of A's entries, of residuals and of the factor's entries all
+/// have to stay clear of float32's ends.
+hal::Result<void> check_scale(double squares, int cols) {
+  const double column = std::sqrt(squares / cols);
+  if (column >= 1e-12 && column <= 1e12) return {};
+  return fail(ErrorCode::out_of_range, "response",
+              "has columns of norm " + number_text(column) +
+                  " (root mean square), expected 1e-12 to 1e12: give A and y in another unit");
+}
+
+/// lambda, the box and rho as the solver will hold them. Outside its range rho would leave nothing of A, or nothing of
+/// itself, in A A' + rho I.
+hal::Result<void> check_in_precision(double squares, const Objective& objective, const Plan& plan) {
+  const bool single = plan.precision == Precision::f32;
+  const double most = single ? 1e35 : 1e300;
+  if (objective.lambda > most) return out_of_range("lambda", objective.lambda, "a smaller number");
+  if (objective.constraint == ConstraintKind::box && std::max(std::abs(objective.lo), std::abs(objective.hi)) > 1e15) {
+    return fail(ErrorCode::out_of_range, "box",
+                "is [" + number_text(objective.lo) + ", " + number_text(objective.hi) +
+                    "], expected bounds of at most 1e15 in magnitude");
+  }
+  const double rounding = single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
+  const double least_rho = squares * rounding * rounding, most_rho = squares / rounding;
+  if (plan.rho >= least_rho && plan.rho <= most_rho) return {};
+  return fail(ErrorCode::out_of_range, plan.solver == SolverKind::tikhonov ? "lambda" : "rho",
+              "is " + number_text(plan.rho) + ", expected " + number_text(least_rho) + " to " + number_text(most_rho) +
+                  " for this response: beyond that, rounding decides the picture");
+}
+
 template <class T>
-void fill_operator(const Response& seeing, OwnedTables<T>& tables) {
+[[nodiscard]] hal::Result<void> fill_operator(const Response& seeing, OwnedTables<T>& tables) {
   const auto rows = static_cast<std::size_t>(seeing.rows()), cols = static_cast<std::size_t>(seeing.cols());
-  const double density =
-      static_cast<double>(seeing.nonzeros()) / (static_cast<double>(rows) * static_cast<double>(cols));
+  const std::int64_t nonzeros = seeing.nonzeros();
+  const double density = static_cast<double>(nonzeros) / (static_cast<double>(rows) * static_cast<double>(cols));
   core::LinearOperator<T>& a = tables.problem.a;
   a.rows = rows;
   a.cols = cols;
@@ -96,14 +128,21 @@ void fill_operator(const Response& seeing, OwnedTables<T>& tables) {
     tables.values.assign(rows * cols, T(0));
     for (std::size_t m = 0; m < rows; ++m) {
       seeing.for_each_in_row(static_cast<int>(m), [&](std::int32_t n, double v) {
-        tables.values[m * cols + static_cast<std::size_t>(n)] = static_cast<T>(v);
+        const bool normal = std::abs(v) >= static_cast<double>(std::numeric_limits<T>::min());
+        tables.values[m * cols + static_cast<std::size_t>(n)] = normal ? static_cast<T>(v) : T(0);
       });
     }
   } else {
+    constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();  // row starts are 32 bits wide
+    if (nonzeros > most) {
+      return fail(ErrorCode::unsupported, "response",
+                  "has " + std::to_string(nonzeros) + " entries, expected at most " + std::to_string(most));
+    }
     tables.row_start.push_back(0);
     for (std::size_t m = 0; m < rows; ++m) {
       seeing.for_each_in_row(static_cast<int>(m), [&](std::int32_t n, double v) {
-        if (v == 0.0) return;
+        // Also what only double can tell from nought: it would be a subnormal number in every product.
+        if (std::abs(v) < static_cast<double>(std::numeric_limits<T>::min())) return;
         tables.values.push_back(static_cast<T>(v));
         tables.columns.push_back(n);
       });
@@ -113,6 +152,7 @@ void fill_operator(const Response& seeing, OwnedTables<T>& tables) {
   a.values = tables.values.data();
   a.row_start = tables.row_start.data();
   a.columns = tables.columns.data();
+  return {};
 }
 
 template <class T>
@@ -171,7 +211,7 @@ struct Reconstructor::Tables {
   hal::Result<void> fill(const Response& response, std::optional<Factor> stored, const Progress& progress) {
     OwnedTables<T>& tables = by_precision.template emplace<OwnedTables<T>>();
     const Response sees = response.select_rows(seeing);
-    fill_operator(sees, tables);
+    if (auto filled = fill_operator(sees, tables); !filled) return filled;
     fill_basis(objective.basis, image_rows, image_cols, tables);
     fill_objective(objective, plan, tables.problem);
     tables.problem.seeing = seeing.data();
@@ -209,8 +249,8 @@ struct Reconstructor::Tables {
                       stored.inverse.size() == core::PackedSymmetric<float>::size(seeing.size());
     if (fits) return {};
     return fail(ErrorCode::stale, "factor",
-                "was made for rho " + std::to_string(stored.rho) + " and " + std::to_string(stored.order) +
-                    " seeing rows, this problem has rho " + std::to_string(plan.rho) + " and " +
+                "was made for rho " + number_text(stored.rho) + " and " + std::to_string(stored.order) +
+                    " seeing rows, this problem has rho " + number_text(plan.rho) + " and " +
                     std::to_string(seeing.size()));
   }
 };
@@ -244,7 +284,11 @@ hal::Result<Reconstructor> Reconstructor::create(const Response& response, int i
   if (tables->seeing.empty()) {
     return fail(ErrorCode::out_of_range, "response", "has no row with a non-zero entry: this eye sees nothing");
   }
+  const auto values = response.values();
+  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  if (auto ok = check_scale(squares, response.cols()); !ok) return tl::unexpected(ok.error());
   tables->plan.rho = resolve_rho(response, objective, plan);
+  if (auto ok = check_in_precision(squares, objective, tables->plan); !ok) return tl::unexpected(ok.error());
   const int most = static_cast<int>(tables->seeing.size());
   const int by_rule = (most + 9) / 10;
   tables->plan.max_reweighted = std::min(most, plan.max_reweighted < 0 ? by_rule : plan.max_reweighted);

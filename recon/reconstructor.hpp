@@ -28,11 +28,14 @@ struct Objective {
 /// How it is solved, decided before the first frame.
 struct Plan {
   SolverKind solver = SolverKind::admm;
+  /// Of the frame path. Relative errors grow with the condition number of A A' + rho I times 6e-8 (f32) or 1e-16 (f64).
   Precision precision = Precision::f32;
   int iterations = 100;     ///< exactly this many per frame, 1 .. 1e6
   double rho = 0.0;         ///< ADMM penalty; 0 = by rule (recon/penalty_rule.hpp)
   double relaxation = 1.7;  ///< 0 < relaxation < 2
-  int max_reweighted = -1;  ///< channels that may have a weight other than one in a frame; -1 = a tenth of M
+  /// Seeing channels that may have a weight other than one in a frame; -1 = a tenth of them, rounded up. Costs
+  /// max_reweighted * (M + max_reweighted) numbers of workspace.
+  int max_reweighted = -1;
 };
 
 /// A problem that is set up: operator tables, basis tables and factor. Immutable after create(); solve() may run from
@@ -40,12 +43,16 @@ struct Plan {
 class Reconstructor {
  public:
   /// `image_rows * image_cols` must be the response's number of columns. `factor` may hand in a stored one: it is
-  /// refused (error stale) when its rho or order does not fit. Errors: usage, mismatch, out_of_range, interrupted.
+  /// refused (error stale) when its rho or order does not fit. Errors: usage, mismatch, interrupted, and out_of_range:
+  /// a setting beyond its range; a response that sees nothing or whose columns have a norm outside 1e-12..1e12 (root
+  /// mean square), because float32 could not hold its factor; a rho too small or too large for the precision.
   [[nodiscard]] static hal::Result<Reconstructor> create(const Response& response, int image_rows, int image_cols,
                                                          const Objective& objective, const Plan& plan,
                                                          std::optional<Factor> factor = std::nullopt,
                                                          const Progress& progress = {});
 
+  Reconstructor(const Reconstructor&) = delete;
+  Reconstructor& operator=(const Reconstructor&) = delete;
   Reconstructor(Reconstructor&&) noexcept;
   Reconstructor& operator=(Reconstructor&&) noexcept;
   ~Reconstructor();
@@ -66,9 +73,10 @@ class Reconstructor {
 
   /// One frame: y and weights have M entries (weights empty: all one; each 0..1, 0 = channel missing, its y may then
   /// be anything), x has N. `workspace` is at least required_bytes() and 64-byte aligned. Same input, same bits.
-  /// FrameInfo::health is invalid, and x zero, for non-finite y or more reweighted channels than planned.
-  FrameInfo solve(std::span<const float> y, std::span<const float> weights, std::span<std::byte> workspace,
-                  std::span<float> x) const noexcept;
+  /// A frame that cannot be solved has Health::invalid, which says why that may be, and x is zero. What blind channels
+  /// read and weigh is never looked at.
+  [[nodiscard]] FrameInfo solve(std::span<const float> y, std::span<const float> weights,
+                                std::span<std::byte> workspace, std::span<float> x) const noexcept;
 
   /// The factor, to be stored; empty inverse where the plan needs none.
   [[nodiscard]] const Factor& factor() const noexcept;

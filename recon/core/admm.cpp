@@ -12,10 +12,21 @@ namespace {
 /// Residuals below this share of the variables' size count as converged.
 constexpr double converged_below = 1e-3;
 
-/// Squared distances after an iteration: how far the copies are from x, and how far they moved.
+/// Squares over all copies after an iteration: how far they are from x, how far they moved, and the sizes to compare
+/// those with.
 struct Gap {
-  double apart = 0.0, moved = 0.0, size = 0.0;
+  double apart = 0.0, moved = 0.0;
+  double of_x = 0.0, of_copies = 0.0, of_duals = 0.0;
 };
+
+/// sqrt(square / size), the size being at least a ten-thousandth of `other` (squares: a hundredth in length). Boyd et
+/// al. 2011, section 3.3.1, compare the primal residual with x and the dual one with u alone; where the solution is
+/// exactly zero, or the constraint and the l1 term are idle, those vanish and rounding would never count as converged.
+double relative(double square, double size, double other) noexcept {
+  const double least = 1e-4 * other;
+  const double scale = size > least ? size : least;
+  return scale > 0.0 ? square_root(square / scale) : 0.0;
+}
 
 /// A copy z of x, or of Psi x, with its scaled dual u and its proximal map.
 template <class T>
@@ -44,7 +55,9 @@ struct Copy {
     update(x, n, relaxation);
     gap.apart += static_cast<double>(squared_distance(x, z, n));
     gap.moved += static_cast<double>(squared_distance(z, before, n));
-    gap.size += static_cast<double>(dot(z, z, n)) + static_cast<double>(dot(u, u, n));
+    gap.of_x += static_cast<double>(dot(x, x, n));
+    gap.of_copies += static_cast<double>(dot(z, z, n));
+    gap.of_duals += static_cast<double>(dot(u, u, n));
   }
 };
 
@@ -148,9 +161,9 @@ class Admm {
     const double penalty =
         static_cast<double>(problem_.lambda) * static_cast<double>(sum_of_magnitudes(penalised, coefficient_count_));
     evaluate(step_.samples(), x_, penalty, step_.row_scratch(), info);
-    const double size = gap.size > 0.0 ? gap.size : 1.0;
-    info.primal_residual = square_root(gap.apart / size);
-    info.dual_residual = square_root(gap.moved / size);
+    const double variables = gap.of_x > gap.of_copies ? gap.of_x : gap.of_copies;
+    info.primal_residual = relative(gap.apart, variables, gap.of_duals);
+    info.dual_residual = relative(gap.moved, gap.of_duals, variables);
     info.iterations = problem_.point.iterations;
     const bool settled = info.primal_residual < converged_below && info.dual_residual < converged_below;
     info.health = settled ? Health::converged : Health::budget_used;

@@ -13,8 +13,10 @@ namespace compueye::recon::core {
 /// variable (their joint map is a soft threshold followed by a clip), two (coefficients and pixels) when an orthonormal
 /// basis meets a constraint, because composing those two maps is not the map of their sum.
 ///
-/// Exactly problem.point.iterations iterations; the returned x satisfies the constraint exactly. `y` and `weights` have
-/// problem.channels entries (weights null: all one), x has problem.pixels().
+/// Exactly problem.point.iterations iterations. Converged by Boyd et al.'s criterion (section 3.3.1), with both
+/// residuals relative: judged so, a rho that is far too small or too large never looks converged. The returned x
+/// satisfies the constraint exactly. `y` and `weights` have problem.channels entries (weights null: all one), x has
+/// problem.pixels().
 template <class T>
 FrameInfo solve_admm(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
                      float* x) noexcept;

@@ -19,9 +19,10 @@ struct OperatingPoint {
 };
 
 enum class Health : std::uint8_t {
-  converged,    ///< the optimality residuals fell below 1e-3 (relative) within the budget
+  converged,    ///< both optimality residuals are below 1e-3 after the last iteration
   budget_used,  ///< exactly K iterations done, residuals above that: normal in real time
-  invalid,      ///< NaN or infinity in y or in the result, or more reweighted channels than planned: x is all zero
+  invalid,      ///< NaN or infinity in y or in the result, a weight outside 0..1, more reweighted channels than planned
+                ///< or buffers of the wrong size: x is all zero, and so are objective and residuals
 };
 
 /// What a solver says about one frame. Not an error type: using up the budget is normal. Sums run over seeing channels;
@@ -34,8 +35,8 @@ struct FrameInfo {
   int channels_reweighted = 0;   ///< seeing rows with a weight other than one in this frame
   double objective = 0.0;        ///< 1/2 ||W^(1/2)(Ax-y)||^2 + lambda ||Psi x||_1 (tikhonov: + lambda/2 ||x||^2)
   double residual = 0.0;         ///< ||W^(1/2)(Ax-y)||, in units of y
-  double primal_residual = 0.0;  ///< relative, 0 for direct solvers
-  double dual_residual = 0.0;    ///< relative, 0 for direct solvers
+  double primal_residual = 0.0;  ///< ||x - z|| / ||x||, z being what is handed out; 0 for direct solvers
+  double dual_residual = 0.0;    ///< ||z - z before|| / ||u||, u the scaled dual variables; 0 for direct solvers
 };
 
 }  // namespace compueye::recon

@@ -14,9 +14,12 @@ FrameInfo begin_outcome(const FrameProblem<T>& problem) noexcept {
 
 template <class T>
 void deliver(const T* solution, bool usable, std::size_t n, FrameInfo& info, float* x) noexcept {
-  const bool good = usable && all_finite(solution, n);
-  for (std::size_t k = 0; k < n; ++k) x[k] = good ? static_cast<float>(solution[k]) : 0.0F;
-  if (!good) info.health = Health::invalid;
+  // A float32 x may overflow where a double solution did not; objectives overflow before either.
+  for (std::size_t k = 0; k < n; ++k) x[k] = usable ? static_cast<float>(solution[k]) : 0.0F;
+  if (usable && all_finite(x, n) && all_finite(&info.objective, 1)) return;
+  for (std::size_t k = 0; k < n; ++k) x[k] = 0.0F;
+  info.health = Health::invalid;
+  info.objective = info.residual = info.primal_residual = info.dual_residual = 0.0;
 }
 
 template <class T>

@@ -11,7 +11,8 @@ namespace compueye::recon::core {
 template <class T>
 [[nodiscard]] FrameInfo begin_outcome(const FrameProblem<T>& problem) noexcept;
 
-/// Hands out x, or all zeros with Health::invalid when the solution is not finite or `usable` is false.
+/// Hands out x; or all zeros with Health::invalid and figures of 0 when `usable` is false, or the solution (as float32)
+/// or its objective is not finite. Comes last, after evaluate().
 template <class T>
 void deliver(const T* solution, bool usable, std::size_t n, FrameInfo& info, float* x) noexcept;
 

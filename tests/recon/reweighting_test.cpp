@@ -5,6 +5,7 @@
 
 #include "recon/reference/reference_solver.hpp"
 #include "tests/recon/random_problem.hpp"
+#include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;
@@ -51,16 +52,6 @@ SolvedFrame solve_refactored(const Case& c, const std::vector<float>& weights, d
   plan.precision = recon::Precision::f64;
   const auto solver = recon::Reconstructor::create(c.a.select_rows(rows, scale), 8, 10, c.objective, plan);
   return solve_frame(solver.value(), y);
-}
-
-double relative_difference(const std::vector<float>& a, const std::vector<float>& b) {
-  double difference = 0.0, size = 1e-30;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    difference += (static_cast<double>(a[k]) - static_cast<double>(b[k])) *
-                  (static_cast<double>(a[k]) - static_cast<double>(b[k]));
-    size += static_cast<double>(b[k]) * static_cast<double>(b[k]);
-  }
-  return std::sqrt(difference / size);
 }
 
 }  // namespace

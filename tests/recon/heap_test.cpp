@@ -1,0 +1,79 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "recon/reconstructor.hpp"
+#include "tests/memory/allocation_counter.hpp"
+#include "tests/recon/random_problem.hpp"
+#include "tests/recon/solve_frame.hpp"
+
+using namespace compueye;
+using namespace compueye::tests;
+using recon::BasisKind;
+using recon::ConstraintKind;
+
+namespace {
+
+struct Setting {
+  recon::Objective objective;
+  recon::Plan plan;
+};
+
+std::vector<Setting> every_setting() {
+  std::vector<Setting> all;
+  for (const auto precision : {recon::Precision::f32, recon::Precision::f64}) {
+    Setting setting;
+    setting.objective.lambda = 0.1;
+    setting.plan.precision = precision;
+    setting.plan.iterations = 5;
+    setting.plan.max_reweighted = 6;
+    setting.plan.solver = recon::SolverKind::tikhonov;
+    all.push_back(setting);
+    setting.plan.solver = recon::SolverKind::admm;
+    for (const auto basis : {BasisKind::identity, BasisKind::dct}) {
+      for (const auto constraint : {ConstraintKind::none, ConstraintKind::nonnegative, ConstraintKind::box}) {
+        setting.objective.basis = basis;
+        setting.objective.constraint = constraint;
+        all.push_back(setting);
+      }
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("solving a frame does not touch the heap, for any solver, basis, constraint and precision") {
+  Random random(64);
+  int solved = 0;
+  for (const double density : {0.08, 0.6}) {  // csr and dense operators
+    const recon::Response a = random_response(random, 40, 130, density);
+    const auto y = to_float(random_vector(random, 40, 0.0, 4.0));
+    std::vector<float> weights(40, 1.0F), bad = y, x(130);
+    weights[2] = weights[11] = weights[39] = 0.0F;
+    weights[20] = 0.25F;
+    bad[7] = std::nanf("");
+    for (const Setting& setting : every_setting()) {
+      const auto solver = recon::Reconstructor::create(a, 10, 13, setting.objective, setting.plan).value();
+      const AlignedBytes workspace(solver.required_bytes());
+      const HeapUse before = heap_use_of_this_thread();
+      const auto whole = solver.solve(y, {}, workspace.span(), x);
+      const auto with_missing = solver.solve(y, weights, workspace.span(), x);
+      const auto invalid = solver.solve(bad, weights, workspace.span(), x);
+      const auto refused = solver.solve(y, weights, workspace.span().first(64), x);
+      const std::size_t bytes = solver.required_bytes();
+      const recon::OperatingPoint point = solver.operating_point();
+      const HeapUse used = heap_use_of_this_thread() - before;
+      CHECK(used.calls() == 0);
+      CHECK(whole.health != recon::Health::invalid);
+      CHECK(with_missing.channels_reweighted == 4);
+      CHECK(invalid.health == recon::Health::invalid);
+      CHECK(refused.health == recon::Health::invalid);
+      CHECK(bytes == workspace.span().size());
+      CHECK(point.precision == setting.plan.precision);
+      ++solved;
+    }
+  }
+  CHECK(solved == 28);
+}
