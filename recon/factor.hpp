@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hal/result.hpp"
+#include "recon/core/frame_info.hpp"
 #include "recon/response.hpp"
 
 namespace compueye::recon {
@@ -16,13 +17,22 @@ using Progress = std::function<bool(std::string_view what, double done, double t
 /// K0 of the quadratic step (core/metric.hpp).
 enum class MetricKind : std::uint8_t { identity, smoothing };
 
+[[nodiscard]] constexpr MetricKind metric_of(BasisKind basis) noexcept {
+  return basis == BasisKind::tv ? MetricKind::smoothing : MetricKind::identity;
+}
+
+/// Whether a solver works with a cached factor at all.
+[[nodiscard]] constexpr bool uses_factor(SolverKind solver) noexcept {
+  return solver == SolverKind::admm || solver == SolverKind::tikhonov;
+}
+
 /// The inverse that makes a frame cheap: (A K0^-1 A' + rho I)^-1 of the seeing rows, made in double, kept in float32 as
 /// a packed upper triangle by rows. Worth storing: it is the slow part of setting up a solver.
 struct Factor {
-  MetricKind metric = MetricKind::identity;
   double rho = 0.0;
   int order = 0;               ///< number of seeing rows
   std::vector<float> inverse;  ///< order * (order + 1) / 2 values
+  MetricKind metric = MetricKind::identity;
 };
 
 /// (A K0^-1 A' + rho I)^-1 computed in double, packed, rounded once to T. A mirror-symmetric eye falls into its parity

@@ -4,38 +4,56 @@
 #include <cmath>
 #include <string>
 
-#include "recon/core/dct.hpp"
-#include "recon/dct_tables.hpp"
+#include "recon/core/basis.hpp"
+#include "recon/problem_tables.hpp"
 
 namespace compueye::recon {
 namespace {
 
 constexpr double pixel_factor = 1.1;
-constexpr double dct_factor = 0.4;
+constexpr double fourier_factor = 0.4;
+constexpr double wavelet_factor = 0.4;
+constexpr double difference_factor = 0.4;
 constexpr double expected_pixel_deviation = 0.35;
 /// Even without noise a little shrinkage keeps directions that the eye does not see from running away.
 constexpr double least_share_of_norm = 1e-6;
 
-/// Squared norms of A psi_j: those of A's columns, or the sums over its rows' squared transforms.
+/// c of each basis, fitted by bench/lambda_rule.cpp on its tuning scenes.
+double factor_of(BasisKind basis) noexcept {
+  switch (basis) {
+    case BasisKind::identity:
+      return pixel_factor;
+    case BasisKind::dct:
+    case BasisKind::dft:
+      return fourier_factor;
+    case BasisKind::haar:
+    case BasisKind::db4:
+      return wavelet_factor;
+    case BasisKind::tv:
+      return difference_factor;
+  }
+  return pixel_factor;
+}
+
+/// Squared norms of A psi_j: those of A's columns, or the sums over its rows' squared transforms. Differences are no
+/// basis; the DCT, in which D'D is diagonal, stands in for them.
 std::vector<double> squared_atom_norms(const Response& response, int image_rows, int image_cols, BasisKind basis) {
   const auto n = static_cast<std::size_t>(response.cols());
-  std::vector<double> squares(n, 0.0), row(n, 0.0);
+  std::vector<double> squares(n, 0.0), row(n, 0.0), coefficients(n);
   if (basis == BasisKind::identity) {
     for (int m = 0; m < response.rows(); ++m) {
       response.for_each_in_row(m, [&](std::int32_t k, double v) { squares[static_cast<std::size_t>(k)] += v * v; });
     }
     return squares;
   }
-  const auto rows_table = make_dct_table<double>(image_rows), cols_table = make_dct_table<double>(image_cols);
-  const core::Dct2d<double> psi{{static_cast<std::size_t>(image_rows), rows_table.data()},
-                                {static_cast<std::size_t>(image_cols), cols_table.data()}};
-  std::vector<double> scratch(
-      core::dct_scratch_size(static_cast<std::size_t>(image_rows), static_cast<std::size_t>(image_cols)));
+  OwnedTables<double> tables;
+  fill_basis(basis == BasisKind::tv ? BasisKind::dct : basis, image_rows, image_cols, tables);
+  std::vector<double> scratch(tables.problem.psi.scratch_size());
   for (const std::int32_t m : response.seeing_rows()) {
     std::fill(row.begin(), row.end(), 0.0);
     response.for_each_in_row(m, [&](std::int32_t k, double v) { row[static_cast<std::size_t>(k)] = v; });
-    core::dct_forward(psi, row.data(), row.data(), scratch.data());
-    for (std::size_t k = 0; k < n; ++k) squares[k] += row[k] * row[k];
+    core::analyse(tables.problem.psi, row.data(), coefficients.data(), scratch.data());
+    for (std::size_t k = 0; k < n; ++k) squares[k] += coefficients[k] * coefficients[k];
   }
   return squares;
 }
@@ -61,8 +79,7 @@ hal::Result<double> lambda_by_rule(const Response& response, int image_rows, int
     const double deviation = std::max(sigma / expected_pixel_deviation, least_share_of_norm * size);
     return deviation * deviation;
   }
-  const double factor = basis == BasisKind::identity ? pixel_factor : dct_factor;
-  return std::max(factor * sigma * size, least_share_of_norm * size * size);
+  return std::max(factor_of(basis) * sigma * size, least_share_of_norm * size * size);
 }
 
 }  // namespace compueye::recon

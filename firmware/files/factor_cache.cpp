@@ -22,7 +22,7 @@ using hal::ErrorCode;
 using hal::Result;
 
 constexpr char magic[8] = {'C', 'E', 'Y', 'E', 'F', 'A', 'C', 'T'};
-constexpr std::uint32_t format_version = 1;
+constexpr std::uint32_t format_version = 2;
 constexpr int max_order = 46340;  // its square still fits in 32 bits; 4 GiB of factor
 
 struct Header {
@@ -31,10 +31,11 @@ struct Header {
   std::int32_t order;
   std::uint64_t response_hash;
   std::uint64_t rho_bits;
+  std::uint64_t metric;
   std::uint64_t payload_checksum;
   std::uint64_t header_checksum;  // of everything above
 };
-static_assert(sizeof(Header) == 48);
+static_assert(sizeof(Header) == 56);
 
 std::uint64_t checksum_of(const Header& header) {
   return XXH3_64bits(&header, offsetof(Header, header_checksum));
@@ -47,6 +48,7 @@ Header header_for(const FactorKey& key, std::uint64_t payload_checksum) {
   header.order = key.order;
   header.response_hash = key.response_hash;
   header.rho_bits = std::bit_cast<std::uint64_t>(key.rho);
+  header.metric = static_cast<std::uint64_t>(key.metric);
   header.payload_checksum = payload_checksum;
   header.header_checksum = checksum_of(header);
   return header;
@@ -78,10 +80,11 @@ Result<void> check_header(const std::filesystem::path& path, const Header& heade
     return hal::fail(ErrorCode::bad_format, path.string(), "is damaged: the checksum of its header is wrong");
   }
   if (header.order != key.order || header.response_hash != key.response_hash ||
-      header.rho_bits != std::bit_cast<std::uint64_t>(key.rho)) {
+      header.rho_bits != std::bit_cast<std::uint64_t>(key.rho) ||
+      header.metric != static_cast<std::uint64_t>(key.metric)) {
     return hal::fail(ErrorCode::stale, path.string(),
-                     "was made from another response, rho or order; expected order " + std::to_string(key.order) +
-                         " and found " + std::to_string(header.order));
+                     "was made from another response, rho, order or metric; expected order " +
+                         std::to_string(key.order) + " and found " + std::to_string(header.order));
   }
   return {};
 }
@@ -138,7 +141,7 @@ Result<recon::Factor> load_factor(const std::filesystem::path& folder, const Fac
   Header header{};
   auto got = read_some(*file, path, std::as_writable_bytes(std::span(&header, 1)));
   if (!got) return tl::unexpected(std::move(got.error()));
-  recon::Factor factor{key.rho, key.order, {}};
+  recon::Factor factor{key.rho, key.order, {}, key.metric};
   const std::size_t count = packed_size(key.order);
   const std::uint64_t expected = sizeof header + count * sizeof(float);
   if (*got != sizeof header) return wrong_length(path, expected, "only " + std::to_string(*got));
@@ -158,12 +161,13 @@ Result<recon::Factor> load_factor(const std::filesystem::path& folder, const Fac
 Result<void> store_factor(const std::filesystem::path& folder, const FactorKey& key, const recon::Factor& factor) {
   const std::filesystem::path path = factor_path(folder, key);
   if (auto ok = check_key(path, key); !ok) return ok;
-  if (factor.order != key.order || std::bit_cast<std::uint64_t>(factor.rho) != std::bit_cast<std::uint64_t>(key.rho) ||
+  if (factor.order != key.order || factor.metric != key.metric ||
+      std::bit_cast<std::uint64_t>(factor.rho) != std::bit_cast<std::uint64_t>(key.rho) ||
       factor.inverse.size() != packed_size(key.order)) {
     return hal::fail(ErrorCode::mismatch, path.string(),
                      "was given a factor of order " + std::to_string(factor.order) + " with " +
                          std::to_string(factor.inverse.size()) + " values, expected order " +
-                         std::to_string(key.order) + " and the rho of its key");
+                         std::to_string(key.order) + " and the rho and metric of its key");
   }
   std::error_code ec;
   std::filesystem::create_directories(folder, ec);

@@ -13,6 +13,7 @@ struct FactorKey {
   std::uint64_t response_hash = 0;  ///< recon::Response::content_hash()
   double rho = 0.0;                 ///< ADMM penalty, compared bit by bit
   int order = 0;                    ///< number of seeing rows, 1 to 46340
+  recon::MetricKind metric = recon::MetricKind::identity;
 };
 
 /// "<folder>/factor-<16 hex digits of the key's hash>.bin"

@@ -32,7 +32,11 @@ struct FrameProblem {
   T lambda = T(0);
   T rho = T(1);
   T relaxation = T(1);
-  OperatingPoint point;  ///< point.iterations = K
+  T lipschitz = T(1);               ///< at least ||A||_2^2, for fista
+  const T* primal_steps = nullptr;  ///< a.cols of them, for cp (recon/step_sizes.hpp)
+  const T* dual_steps = nullptr;    ///< a.rows of them, for cp
+  T basis_step = T(0);              ///< for cp
+  OperatingPoint point;             ///< point.iterations = K
 
   [[nodiscard]] std::size_t pixels() const noexcept { return a.cols; }
 };

@@ -162,7 +162,7 @@ TEST_CASE("a choice that does not exist is answered with those that do") {
       {"constraint = \"box\"", "constraint = \"non-negative\"", 23, "did you mean \"nonnegative\"?",
        ErrorCode::not_found},
       {"[scene]", "solver = \"amdm\"\n[scene]", 25, "did you mean \"admm\"?", ErrorCode::not_found},
-      {"[scene]", "basis = \"haar\"\n[scene]", 25, "one of \"identity\", \"dct\"", ErrorCode::not_found},
+      {"[scene]", "basis = \"curvelet\"\n[scene]", 25, "one of \"identity\", \"dct\"", ErrorCode::not_found},
       {"[scene]", "solver = \"ADMM\"\n[scene]", 25, "did you mean \"admm\"?", ErrorCode::not_found},
   });
 }

@@ -42,7 +42,8 @@ TEST_CASE("a factor comes back bit for bit under its key only") {
   CHECK(name.size() == std::string("factor-0123456789abcdef.bin").size());
   for (const FactorKey& other : {FactorKey{key.response_hash ^ 1U, key.rho, key.order},
                                  FactorKey{key.response_hash, std::nextafter(key.rho, 1.0), key.order},
-                                 FactorKey{key.response_hash, key.rho, key.order + 1}}) {
+                                 FactorKey{key.response_hash, key.rho, key.order + 1},
+                                 FactorKey{key.response_hash, key.rho, key.order, recon::MetricKind::smoothing}}) {
     CHECK(factor_path(cache, other) != factor_path(cache, key));
     CHECK(load_factor(cache, other).error().code == ErrorCode::not_found);
     // A file that was renamed, or a hash that collided.

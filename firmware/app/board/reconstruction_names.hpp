@@ -1,25 +1,14 @@
 #pragma once
 
-#include <span>
-#include <string_view>
-
-#include "recon/reconstructor.hpp"
+#include "recon/option_names.hpp"
 
 namespace compueye::firmware {
 
-/// A word of board.toml and of the command line, and what it stands for.
-template <class Kind>
-struct Named {
-  std::string_view name;
-  Kind kind;
-};
-
-[[nodiscard]] std::span<const Named<recon::SolverKind>> solver_names() noexcept;
-[[nodiscard]] std::span<const Named<recon::BasisKind>> basis_names() noexcept;
-[[nodiscard]] std::span<const Named<recon::ConstraintKind>> constraint_names() noexcept;
-
-[[nodiscard]] std::string_view name(recon::SolverKind kind) noexcept;
-[[nodiscard]] std::string_view name(recon::BasisKind kind) noexcept;
-[[nodiscard]] std::string_view name(recon::ConstraintKind kind) noexcept;
+// The words of board.toml and of the command line are recon's own.
+using recon::basis_names;
+using recon::constraint_names;
+using recon::name;
+using recon::Named;
+using recon::solver_names;
 
 }  // namespace compueye::firmware

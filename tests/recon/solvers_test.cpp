@@ -4,7 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "recon/option_names.hpp"
 #include "recon/reference/reference_solver.hpp"
+#include "recon/solver_table.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
 
@@ -13,6 +15,7 @@ using namespace compueye::tests;
 using recon::BasisKind;
 using recon::ConstraintKind;
 using recon::Response;
+using recon::SolverKind;
 
 namespace {
 
@@ -71,7 +74,7 @@ struct Setting {
 
 }  // namespace
 
-TEST_CASE("admm reaches the reference's objective to 1e-4 on every kind of problem, basis and constraint") {
+TEST_CASE("l1 solvers reach the reference's objective to 1e-4 on every kind of problem, basis and constraint") {
   Random random(72);
   int compared = 0;
   for (const Problem& problem : problems()) {
@@ -103,22 +106,28 @@ TEST_CASE("admm reaches the reference's objective to 1e-4 on every kind of probl
       objective.lambda = setting.lambda;
       const auto best = recon::reference::solve_reference(problem.a, problem.rows, problem.cols, objective, y);
       REQUIRE(best.converged);
-      recon::Plan plan;
-      plan.iterations = 5000;
-      auto solver = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan);
-      REQUIRE(solver.has_value());
-      const SolvedFrame frame = solve_frame(*solver, to_float(y));
-      const double reached = recon::reference::objective_value(problem.a, problem.rows, problem.cols, objective, y, {},
-                                                               std::vector<double>(frame.x.begin(), frame.x.end()));
-      CHECK(reached <= best.objective * (1.0 + 1e-4) + 1e-7);
-      CHECK(reached >= best.objective * (1.0 - 1e-6) - 1e-7);
-      CHECK(frame.info.objective == doctest::Approx(reached).epsilon(1e-4));
-      CHECK(frame.info.iterations == 5000);
-      CHECK(frame.info.health == recon::Health::converged);
-      ++compared;
+      for (const auto solver_kind : {SolverKind::admm, SolverKind::fista, SolverKind::chambolle_pock}) {
+        if (!recon::supports(solver_kind, setting.basis, setting.constraint)) continue;
+        CAPTURE(recon::name(solver_kind));
+        recon::Plan plan;
+        plan.solver = solver_kind;
+        plan.iterations = 5000;
+        const auto solver = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan);
+        REQUIRE(solver.has_value());
+        const SolvedFrame frame = solve_frame(*solver, to_float(y));
+        const double reached =
+            recon::reference::objective_value(problem.a, problem.rows, problem.cols, objective, y, {},
+                                              std::vector<double>(frame.x.begin(), frame.x.end()));
+        CHECK(reached <= best.objective * (1.0 + 1e-4) + 1e-7);
+        CHECK(reached >= best.objective * (1.0 - 1e-6) - 1e-7);
+        CHECK(frame.info.objective == doctest::Approx(reached).epsilon(1e-4));
+        CHECK(frame.info.iterations == 5000);
+        CHECK(frame.info.health == recon::Health::converged);
+        ++compared;
+      }
     }
   }
-  CHECK(compared >= 20);
+  CHECK(compared >= 40);
 }
 
 TEST_CASE("tikhonov is the closed form, in both precisions") {

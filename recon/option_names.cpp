@@ -1,0 +1,58 @@
+#include "recon/option_names.hpp"
+
+#include <array>
+
+namespace compueye::recon {
+namespace {
+
+constexpr std::array<Named<SolverKind>, 4> solvers{{
+    {"admm", SolverKind::admm},
+    {"fista", SolverKind::fista},
+    {"cp", SolverKind::chambolle_pock},
+    {"tikhonov", SolverKind::tikhonov},
+}};
+constexpr std::array<Named<BasisKind>, 6> bases{{
+    {"identity", BasisKind::identity},
+    {"dct", BasisKind::dct},
+    {"haar", BasisKind::haar},
+    {"db4", BasisKind::db4},
+    {"dft", BasisKind::dft},
+    {"tv", BasisKind::tv},
+}};
+constexpr std::array<Named<ConstraintKind>, 3> constraints{{
+    {"none", ConstraintKind::none},
+    {"nonnegative", ConstraintKind::nonnegative},
+    {"box", ConstraintKind::box},
+}};
+
+template <class Kind>
+std::string_view name_in(std::span<const Named<Kind>> names, Kind kind) noexcept {
+  for (const Named<Kind>& named : names) {
+    if (named.kind == kind) return named.name;
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+std::span<const Named<SolverKind>> solver_names() noexcept {
+  return solvers;
+}
+std::span<const Named<BasisKind>> basis_names() noexcept {
+  return bases;
+}
+std::span<const Named<ConstraintKind>> constraint_names() noexcept {
+  return constraints;
+}
+
+std::string_view name(SolverKind kind) noexcept {
+  return name_in(solver_names(), kind);
+}
+std::string_view name(BasisKind kind) noexcept {
+  return name_in(basis_names(), kind);
+}
+std::string_view name(ConstraintKind kind) noexcept {
+  return name_in(constraint_names(), kind);
+}
+
+}  // namespace compueye::recon

@@ -1,0 +1,136 @@
+#include "recon/problem_tables.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "recon/dct_tables.hpp"
+#include "recon/fourier_tables.hpp"
+#include "recon/smoothing.hpp"
+#include "recon/step_sizes.hpp"
+
+namespace compueye::recon {
+namespace {
+
+/// Dense rows are read several times faster per entry than sparse ones; below this share sparse wins.
+constexpr double dense_above = 0.15;
+
+/// What only double can tell from nought would be a subnormal number in every product.
+template <class T>
+T kept(double value) {
+  return std::abs(value) < static_cast<double>(std::numeric_limits<T>::min()) ? T(0) : static_cast<T>(value);
+}
+
+template <class T>
+void fill_dense(const Response& seeing, OwnedTables<T>& tables) {
+  const auto cols = static_cast<std::size_t>(seeing.cols());
+  tables.values.assign(static_cast<std::size_t>(seeing.rows()) * cols, T(0));
+  for (int m = 0; m < seeing.rows(); ++m) {
+    T* row = tables.values.data() + static_cast<std::size_t>(m) * cols;
+    seeing.for_each_in_row(m, [&](std::int32_t n, double v) { row[n] = kept<T>(v); });
+  }
+}
+
+template <class T>
+void fill_sparse(const Response& seeing, OwnedTables<T>& tables) {
+  tables.row_start.push_back(0);
+  for (int m = 0; m < seeing.rows(); ++m) {
+    seeing.for_each_in_row(m, [&](std::int32_t n, double v) {
+      const T value = kept<T>(v);
+      if (value == T(0)) return;
+      tables.values.push_back(value);
+      tables.columns.push_back(n);
+    });
+    tables.row_start.push_back(static_cast<std::uint32_t>(tables.values.size()));
+  }
+}
+
+template <class T>
+void fill_numbers(const Objective& objective, const Plan& plan, core::FrameProblem<T>& problem) {
+  constexpr T infinity = std::numeric_limits<T>::infinity();
+  problem.constrained = objective.constraint != ConstraintKind::none;
+  const bool box = objective.constraint == ConstraintKind::box;
+  problem.lo = box ? static_cast<T>(objective.lo) : T(0);
+  problem.hi = box ? static_cast<T>(objective.hi) : infinity;
+  problem.lambda = static_cast<T>(objective.lambda);
+  problem.rho = static_cast<T>(plan.rho);
+  problem.relaxation = static_cast<T>(plan.relaxation);
+  problem.point.basis = objective.basis;
+  problem.point.solver = plan.solver;
+  problem.point.precision = plan.precision;
+  problem.point.iterations = plan.solver == SolverKind::tikhonov ? 1 : plan.iterations;
+  problem.point.op = problem.a.kind;
+}
+
+}  // namespace
+
+template <class T>
+hal::Result<void> fill_operator(const Response& seeing, OwnedTables<T>& tables) {
+  const auto rows = static_cast<std::size_t>(seeing.rows()), cols = static_cast<std::size_t>(seeing.cols());
+  const std::int64_t nonzeros = seeing.nonzeros();
+  const double density = static_cast<double>(nonzeros) / (static_cast<double>(rows) * static_cast<double>(cols));
+  core::LinearOperator<T>& a = tables.problem.a;
+  a.rows = rows;
+  a.cols = cols;
+  a.kind = density > dense_above ? OperatorKind::dense : OperatorKind::csr;
+  constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();  // row starts are 32 bits wide
+  if (a.kind == OperatorKind::csr && nonzeros > most) {
+    return hal::fail(hal::ErrorCode::unsupported, "response",
+                     "has " + std::to_string(nonzeros) + " entries, expected at most " + std::to_string(most));
+  }
+  if (a.kind == OperatorKind::dense) {
+    fill_dense(seeing, tables);
+  } else {
+    fill_sparse(seeing, tables);
+  }
+  a.values = tables.values.data();
+  a.row_start = tables.row_start.data();
+  a.columns = tables.columns.data();
+  return {};
+}
+
+template <class T>
+void fill_basis(BasisKind kind, int image_rows, int image_cols, OwnedTables<T>& tables) {
+  const auto rows = static_cast<std::size_t>(image_rows), cols = static_cast<std::size_t>(image_cols);
+  core::Basis<T>& psi = tables.problem.psi;
+  psi.kind = kind;
+  psi.rows = rows;
+  psi.cols = cols;
+  if (kind == BasisKind::dft) {
+    tables.row_table = make_fourier_table<T>(image_rows);
+    tables.col_table = make_fourier_table<T>(image_cols);
+    psi.fourier = {rows, cols, tables.row_table.data(), tables.col_table.data()};
+  }
+  if (kind != BasisKind::dct && kind != BasisKind::tv) return;
+  tables.row_table = make_dct_table<T>(image_rows);
+  tables.col_table = make_dct_table<T>(image_cols);
+  psi.dct = {{rows, tables.row_table.data()}, {cols, tables.col_table.data()}};
+  if (kind != BasisKind::tv) return;
+  for (const double eigenvalue : smoothing_eigenvalues(image_rows, image_cols)) {
+    tables.metric.push_back(static_cast<T>(1.0 / eigenvalue));
+  }
+  tables.problem.metric = {tables.metric.data(), psi.dct};
+}
+
+template <class T>
+void fill_choice(const Response& seeing, const Objective& objective, const Plan& plan, OwnedTables<T>& tables) {
+  core::FrameProblem<T>& problem = tables.problem;
+  fill_numbers(objective, plan, problem);
+  if (plan.solver == SolverKind::fista) problem.lipschitz = static_cast<T>(squared_norm_bound(seeing));
+  if (plan.solver != SolverKind::chambolle_pock) return;
+  const PrimalDualSteps steps = primal_dual_steps(seeing, problem.psi.squared_norm());
+  tables.primal_steps.assign(steps.primal.begin(), steps.primal.end());
+  tables.dual_steps.assign(steps.dual.begin(), steps.dual.end());
+  problem.primal_steps = tables.primal_steps.data();
+  problem.dual_steps = tables.dual_steps.data();
+  problem.basis_step = static_cast<T>(steps.basis);
+}
+
+template hal::Result<void> fill_operator(const Response&, OwnedTables<float>&);
+template hal::Result<void> fill_operator(const Response&, OwnedTables<double>&);
+template void fill_basis(BasisKind, int, int, OwnedTables<float>&);
+template void fill_basis(BasisKind, int, int, OwnedTables<double>&);
+template void fill_choice(const Response&, const Objective&, const Plan&, OwnedTables<float>&);
+template void fill_choice(const Response&, const Objective&, const Plan&, OwnedTables<double>&);
+
+}  // namespace compueye::recon

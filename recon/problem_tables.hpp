@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "hal/result.hpp"
+#include "recon/core/frame_problem.hpp"
+#include "recon/reconstructor.hpp"
+
+namespace compueye::recon {
+
+/// The tables a core::FrameProblem<T> looks at.
+template <class T>
+struct OwnedTables {
+  std::vector<T> values;
+  std::vector<std::uint32_t> row_start;
+  std::vector<std::int32_t> columns;
+  std::vector<T> row_table;  // of the basis, or of the metric's DCT
+  std::vector<T> col_table;
+  std::vector<T> metric;
+  std::vector<T> inverse;
+  std::vector<T> primal_steps;
+  std::vector<T> dual_steps;
+  core::FrameProblem<T> problem;
+
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return (values.size() + row_table.size() + col_table.size() + metric.size() + inverse.size() + primal_steps.size() +
+            dual_steps.size()) *
+               sizeof(T) +
+           (row_start.size() + columns.size()) * sizeof(std::uint32_t);
+  }
+};
+
+/// A of the seeing rows, dense or sparse. Error unsupported: more entries than 32-bit row starts can number.
+template <class T>
+[[nodiscard]] hal::Result<void> fill_operator(const Response& seeing, OwnedTables<T>& tables);
+
+/// Psi and the metric that goes with it.
+template <class T>
+void fill_basis(BasisKind kind, int image_rows, int image_cols, OwnedTables<T>& tables);
+
+/// The numbers of objective and plan, and the step sizes of solvers without a factor. After fill_operator() and
+/// fill_basis().
+template <class T>
+void fill_choice(const Response& seeing, const Objective& objective, const Plan& plan, OwnedTables<T>& tables);
+
+}  // namespace compueye::recon

@@ -1,0 +1,89 @@
+#include "recon/step_sizes.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "recon/solver_table.hpp"
+#include "tests/recon/random_problem.hpp"
+
+using namespace compueye;
+using namespace compueye::tests;
+
+namespace {
+
+Eigen::MatrixXd dense(const recon::Response& a) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(a.rows(), a.cols());
+  for (int m = 0; m < a.rows(); ++m) {
+    a.for_each_in_row(m, [&](std::int32_t n, double v) { matrix(m, n) = v; });
+  }
+  return matrix;
+}
+
+double norm(const Eigen::MatrixXd& matrix) {
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues()[0];
+}
+
+}  // namespace
+
+TEST_CASE("the gradient step's bound lies just above the squared norm") {
+  Random random(101);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto a = random_response(random, 1 + random.below(20), 1 + random.below(30), 0.6);
+    const double exact = norm(dense(a)) * norm(dense(a));
+    const double bound = recon::squared_norm_bound(a);
+    CHECK(bound >= exact);
+    CHECK(bound <= 1.02 * exact + 1e-300);
+  }
+}
+
+TEST_CASE("primal-dual steps keep the preconditioned operator's norm at one or below") {
+  Random random(102);
+  for (const double unit : {1e-3, 1.0, 1e4}) {
+    for (int trial = 0; trial < 10; ++trial) {
+      const auto any = random_response(random, 12, 20, 0.5);
+      const auto seeing = any.seeing_rows();
+      const auto a = any.select_rows(seeing, std::vector<double>(seeing.size(), unit));
+      const auto steps = recon::primal_dual_steps(a, 1.0);
+      Eigen::MatrixXd scaled = Eigen::MatrixXd::Zero(a.rows() + a.cols(), a.cols());
+      const Eigen::MatrixXd matrix = dense(a);
+      for (int n = 0; n < a.cols(); ++n) {
+        const double primal = std::sqrt(steps.primal[static_cast<std::size_t>(n)]);
+        for (int m = 0; m < a.rows(); ++m) {
+          scaled(m, n) = std::sqrt(steps.dual[static_cast<std::size_t>(m)]) * matrix(m, n) * primal;
+        }
+        scaled(a.rows() + n, n) = std::sqrt(steps.basis) * primal;
+      }
+      CHECK(norm(scaled) <= 1.0 + 1e-12);
+    }
+  }
+}
+
+TEST_CASE("what goes with what") {
+  using recon::BasisKind;
+  using recon::ConstraintKind;
+  using recon::SolverKind;
+  for (const auto basis : {BasisKind::identity, BasisKind::dct, BasisKind::haar, BasisKind::tv}) {
+    for (const auto constraint : {ConstraintKind::none, ConstraintKind::nonnegative, ConstraintKind::box}) {
+      CHECK(recon::supports(SolverKind::admm, basis, constraint));
+      CHECK(recon::supports(SolverKind::chambolle_pock, basis, constraint));
+      recon::Plan plan;
+      plan.solver = SolverKind::fista;
+      plan.iterations = 1;
+      recon::Objective objective;
+      objective.basis = basis;
+      objective.constraint = constraint;
+      const auto a = recon::Response::from_dense(2, 4, {1, 0, 1, 0, 0, 1, 0, 1}).value();
+      const auto made = recon::Reconstructor::create(a, 2, 2, objective, plan);
+      CHECK(made.has_value() == recon::supports(SolverKind::fista, basis, constraint));
+      if (made) continue;
+      CHECK(made.error().code == hal::ErrorCode::usage);
+      CHECK(made.error().sentence.find("admm, cp") != std::string::npos);
+    }
+  }
+  CHECK(recon::supports(SolverKind::fista, BasisKind::identity, ConstraintKind::box));
+  CHECK_FALSE(recon::supports(SolverKind::fista, BasisKind::dct, ConstraintKind::box));
+  CHECK_FALSE(recon::supports(SolverKind::fista, BasisKind::tv, ConstraintKind::none));
+  CHECK_FALSE(recon::supports(SolverKind::tikhonov, BasisKind::dct, ConstraintKind::none));
+}
