@@ -43,7 +43,7 @@ class RunSession {
         .and_then([this] { return make_eye(); })
         .and_then([this] { return fit(); })
         .and_then([this] { return run_pipeline(); })
-        .and_then([this] { return compare(); })
+        .and_then([this] { return compare_or_note(); })
         .and_then([this] { return print(); })
         .and_then([this] { return verdict(); });
   }
@@ -56,6 +56,7 @@ class RunSession {
   Result<void> make_source();
   Result<void> fit();
   Result<void> run_pipeline();
+  Result<void> compare_or_note();
   Result<void> compare();
   Result<void> measure_quality();
   Result<void> write_sheet();
@@ -142,7 +143,8 @@ Result<void> RunSession::make_source() {
 }
 
 Result<void> RunSession::fit() {
-  const auto frame = take_trial_frame(board_, correction_settings(board_, eye_->sees()), *source_, clock_);
+  const auto frame =
+      take_trial_frame(board_, correction_settings(board_, eye_->sees()), *source_, clock_, signals_.requested());
   if (!frame) return tl::unexpected(frame.error());
   if (options_.deadline_ms) {
     const auto choice = fit_deadline(*options_.deadline_ms, 1e3 / board_.source.frame_rate_hz, *frame, *eye_, clock_);
@@ -216,6 +218,14 @@ Result<void> RunSession::measure_quality() {
   const auto last = quality_of(view(keeper_->last()), truth_);
   if (!last) return tl::unexpected(last.error());
   report_.last_quality = *last;
+  return {};
+}
+
+/// A sheet that cannot be written must not cost the summary of the run.
+Result<void> RunSession::compare_or_note() {
+  if (auto compared = compare(); !compared && !report_.summary.error) {
+    report_.summary.error = std::move(compared.error());
+  }
   return {};
 }
 

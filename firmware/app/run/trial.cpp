@@ -27,16 +27,32 @@ hal::Result<void> unusable(const Board& board, const Correction& correction, con
                                report.masked, seeing));
 }
 
+/// In short reads, so that a stop request is noticed even at a frame an hour.
+hal::Result<hal::SampleBlock> first_block(const Board& board, hal::SampleSource& source, hal::Clock& clock,
+                                          const std::atomic<bool>& stop) {
+  constexpr std::int64_t slice_ns = 100'000'000, patience_ns = 2'000'000'000;
+  const auto period_ns = static_cast<std::int64_t>(1e9 / board.source.frame_rate_hz);
+  const std::int64_t give_up_ns = clock.now_ns() + 2 * period_ns + patience_ns;
+  for (;;) {
+    if (stop.load(std::memory_order_relaxed)) {
+      return hal::fail(ErrorCode::interrupted, board.name, "stopped before the first frame");
+    }
+    auto block = source.read(clock.now_ns() + slice_ns);
+    if (block || block.error().code != ErrorCode::timeout) return block;
+    if (clock.now_ns() >= give_up_ns) {
+      return hal::fail(ErrorCode::timeout, source.describe().serial, "no frame came; is the eye powered?");
+    }
+  }
+}
+
 }  // namespace
 
 hal::Result<TrialFrame> take_trial_frame(const Board& board, const CorrectionSettings& settings,
-                                         hal::SampleSource& source, hal::Clock& clock) {
-  constexpr std::int64_t patience_ns = 2'000'000'000;
+                                         hal::SampleSource& source, hal::Clock& clock, const std::atomic<bool>& stop) {
   auto correction = Correction::create(settings, source.describe());
   if (!correction) return tl::unexpected(std::move(correction.error()));
   if (auto started = source.start(); !started) return tl::unexpected(std::move(started.error()));
-  const auto period_ns = static_cast<std::int64_t>(1e9 / board.source.frame_rate_hz);
-  const auto block = source.read(clock.now_ns() + 2 * period_ns + patience_ns);
+  const auto block = first_block(board, source, clock, stop);
   if (!block) {
     source.stop();
     return tl::unexpected(block.error());
