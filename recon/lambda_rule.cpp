@@ -69,12 +69,15 @@ double median_atom_norm(const Response& response, int image_rows, int image_cols
 
 hal::Result<double> lambda_by_rule(const Response& response, int image_rows, int image_cols, SolverKind solver,
                                    BasisKind basis, double sigma) {
+  return lambda_by_rule(median_atom_norm(response, image_rows, image_cols, basis), solver, basis, sigma);
+}
+
+hal::Result<double> lambda_by_rule(double atom_norm, SolverKind solver, BasisKind basis, double sigma) {
   if (!std::isfinite(sigma) || sigma < 0.0) {
     return hal::fail(hal::ErrorCode::out_of_range, "sigma",
                      "is " + std::to_string(sigma) + ", expected a finite number of 0 or more");
   }
-  const double norm = median_atom_norm(response, image_rows, image_cols, basis);
-  const double size = norm > 0.0 ? norm : 1.0;
+  const double size = atom_norm > 0.0 ? atom_norm : 1.0;
   if (solver == SolverKind::tikhonov) {
     const double deviation = std::max(sigma / expected_pixel_deviation, least_share_of_norm * size);
     return deviation * deviation;

@@ -20,6 +20,9 @@ namespace compueye::recon {
 [[nodiscard]] hal::Result<double> lambda_by_rule(const Response& response, int image_rows, int image_cols,
                                                  SolverKind solver, BasisKind basis, double sigma);
 
+/// The same from median_atom_norm(), which for a large eye is worth keeping: finding it takes seconds.
+[[nodiscard]] hal::Result<double> lambda_by_rule(double atom_norm, SolverKind solver, BasisKind basis, double sigma);
+
 /// median_j ||A psi_j||_2 over all N elements of the basis.
 [[nodiscard]] double median_atom_norm(const Response& response, int image_rows, int image_cols, BasisKind basis);
 

@@ -1,7 +1,34 @@
+#include <filesystem>
+#include <memory>
+
 #include "firmware/app/command.hpp"
+#include "firmware/app/devices/device_list.hpp"
 
 namespace compueye::firmware {
+namespace {
 
-void add_devices_command(CLI::App&, Action&) {}
+struct DevicesOptions {
+  std::filesystem::path boards = "boards";
+  bool json = false;
+};
+
+hal::Result<void> list_devices(const DevicesOptions& options) {
+  const auto listed = list_boards(options.boards);
+  if (!listed) return tl::unexpected(listed.error());
+  return print_text(options.json ? json_text(devices_json(*listed)) : devices_text(options.boards, *listed));
+}
+
+}  // namespace
+
+void add_devices_command(CLI::App& app, Action& chosen) {
+  auto options = std::make_shared<DevicesOptions>();
+  CLI::App* command = app.add_subcommand("devices", "which eyes there are");
+  command->add_option("--boards", options->boards, "folder that holds the boards (default: boards)");
+  command->add_flag("--json", options->json, "print one object and nothing else on stdout");
+  command->footer(
+      "Today these are the simulated eyes of the board files; a broken file is listed with what is wrong.\n\n"
+      "Example: compueye devices --boards boards");
+  command->callback([options, &chosen] { chosen = [options] { return list_devices(*options); }; });
+}
 
 }  // namespace compueye::firmware

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "firmware/app/board/board.hpp"
+#include "firmware/app/report/json_report.hpp"
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// A folder with a board file: what it describes, or why it cannot be read.
+struct ListedBoard {
+  std::filesystem::path folder;
+  hal::Result<Board> board;
+};
+
+/// Every folder below `boards` that holds a board.toml, by name. Errors: not_found, io.
+[[nodiscard]] hal::Result<std::vector<ListedBoard>> list_boards(const std::filesystem::path& boards);
+
+[[nodiscard]] std::string devices_text(const std::filesystem::path& boards, const std::vector<ListedBoard>& listed);
+[[nodiscard]] Json devices_json(const std::vector<ListedBoard>& listed);
+
+}  // namespace compueye::firmware

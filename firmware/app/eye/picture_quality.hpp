@@ -1,0 +1,19 @@
+#pragma once
+
+#include "hal/image.hpp"
+#include "hal/result.hpp"
+#include "recon/metrics.hpp"
+
+namespace compueye::firmware {
+
+/// How near a picture comes to the truth; see recon/metrics.hpp.
+struct PictureQuality {
+  double nmse = 0.0;
+  double psnr_db = 0.0;
+  double ssim = 0.0;
+};
+
+/// Errors: those of the metrics.
+[[nodiscard]] hal::Result<PictureQuality> quality_of(const recon::PictureView& picture, const hal::Image& truth);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,119 @@
+#include "firmware/app/eye/ready_eye.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "calib/nominal.hpp"
+#include "firmware/app/eye/kept_atom_norm.hpp"
+#include "recon/lambda_rule.hpp"
+#include "recon/penalty_rule.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+std::vector<std::uint8_t> seeing_flags(const recon::Response& response) {
+  std::vector<std::uint8_t> sees(static_cast<std::size_t>(response.rows()), 0);
+  for (const std::int32_t m : response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
+  return sees;
+}
+
+/// A dead ommatidium tells nothing: with an empty row every solver leaves it out.
+recon::Response without_rows(const recon::Response& response, const std::vector<int>& dead) {
+  std::vector<std::int64_t> row_start{0};
+  std::vector<std::int32_t> columns;
+  std::vector<double> values;
+  for (int m = 0; m < response.rows(); ++m) {
+    if (!std::binary_search(dead.begin(), dead.end(), m)) {
+      response.for_each_in_row(m, [&](std::int32_t n, double value) {
+        columns.push_back(n);
+        values.push_back(value);
+      });
+    }
+    row_start.push_back(static_cast<std::int64_t>(values.size()));
+  }
+  auto kept = recon::Response::from_csr(response.rows(), response.cols(), std::move(row_start), std::move(columns),
+                                        std::move(values));
+  return std::move(*kept);  // rows of a valid response are valid
+}
+
+hal::Result<LambdaChoice> choose_lambda(const Board& board, const EyeRequest& request, const recon::Response& response,
+                                        std::uint64_t response_hash) {
+  const ReconstructionSettings& settings = board.reconstruction;
+  if (request.lambda) return LambdaChoice{*request.lambda, false, 0.0};
+  if (settings.lambda && !request.sigma) return LambdaChoice{*settings.lambda, false, 0.0};
+  const double sigma = request.sigma.value_or(board.noise_sigma());
+  const double norm = kept_atom_norm(request.cache, response, response_hash, board.object, settings.basis);
+  return recon::lambda_by_rule(norm, settings.solver, settings.basis, sigma).map([&](double lambda) {
+    return LambdaChoice{lambda, true, sigma};
+  });
+}
+
+recon::Plan plan_of(const Board& board, const EyeRequest& request, std::int64_t seeing) {
+  recon::Plan plan;
+  plan.solver = board.reconstruction.solver;
+  plan.iterations = request.iterations.value_or(board.reconstruction.iterations);
+  plan.rho = board.reconstruction.rho.value_or(0.0);
+  plan.relaxation = board.reconstruction.relaxation;
+  // As many as the correction lets pass, so that no usable frame is too much for the solver.
+  plan.max_reweighted =
+      static_cast<int>(std::ceil(board.sensor.max_missing_share * static_cast<double>(seeing) + 1e-9));
+  return plan;
+}
+
+recon::Objective objective_of(const Board& board, double lambda) {
+  const ReconstructionSettings& settings = board.reconstruction;
+  return {settings.basis, settings.constraint, settings.box_lo, settings.box_hi, lambda};
+}
+
+hal::Result<std::unique_ptr<recon::Response>> living_response(const Board& board, std::vector<std::uint8_t>& sees,
+                                                              const recon::Progress& progress) {
+  auto response = calib::nominal_response(board.eye, board.object, progress);
+  if (!response) return tl::unexpected(std::move(response.error()));
+  sees = seeing_flags(*response);
+  if (board.sensor.dead.empty()) return std::make_unique<recon::Response>(std::move(*response));
+  return std::make_unique<recon::Response>(without_rows(*response, board.sensor.dead));
+}
+
+}  // namespace
+
+hal::Result<ReadyEye> ReadyEye::make(const Board& board, const EyeRequest& request, const recon::Progress& progress) {
+  ReadyEye eye;
+  auto response = living_response(board, eye.sees_, progress);
+  if (!response) return tl::unexpected(std::move(response.error()));
+  eye.response_ = std::move(*response);
+  const recon::Response& a = *eye.response_;
+  if (progress && !progress("lambda by rule", 0.0, 0.0)) {
+    return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");
+  }
+  const std::uint64_t hash = a.content_hash();
+  auto lambda = choose_lambda(board, request, a, hash);
+  if (!lambda) return tl::unexpected(std::move(lambda.error()));
+  eye.lambda_ = *lambda;
+
+  const recon::Objective objective = objective_of(board, lambda->value);
+  const recon::Plan plan = plan_of(board, request, std::count(eye.sees_.begin(), eye.sees_.end(), 1));
+  const auto order = static_cast<int>(a.seeing_rows().size());
+  KeptFactor factor(request.cache, {hash, recon::resolve_rho(a, objective, plan), order});
+  auto made =
+      recon::Reconstructor::create(a, board.object.rows, board.object.cols, objective, plan, factor.take(), progress);
+  if (!made) return tl::unexpected(std::move(made.error()));
+  eye.reconstructor_ = std::make_unique<recon::Reconstructor>(std::move(*made));
+  if (factor.origin() != FactorOrigin::kept) factor.keep(eye.reconstructor_->factor());
+  eye.factor_origin_ = factor.origin();
+  eye.notes_ = factor.notes();
+  return eye;
+}
+
+hal::Result<void> ReadyEye::set_iterations(int iterations) {
+  recon::Plan plan = reconstructor_->plan();
+  if (plan.iterations == iterations) return {};
+  plan.iterations = iterations;
+  auto made = recon::Reconstructor::create(*response_, reconstructor_->image_rows(), reconstructor_->image_cols(),
+                                           reconstructor_->objective(), plan, reconstructor_->factor());
+  if (!made) return tl::unexpected(std::move(made.error()));
+  *reconstructor_ = std::move(*made);
+  return {};
+}
+
+}  // namespace compueye::firmware

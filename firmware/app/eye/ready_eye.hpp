@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/app/board/board.hpp"
+#include "firmware/app/eye/kept_factor.hpp"
+#include "hal/result.hpp"
+#include "recon/reconstructor.hpp"
+
+namespace compueye::firmware {
+
+/// What a command line says otherwise than the board.
+struct EyeRequest {
+  std::optional<int> iterations;
+  std::optional<double> lambda;  ///< by hand
+  std::optional<double> sigma;   ///< of one sample, for the rule; wins over a lambda that the board states
+  std::filesystem::path cache;   ///< where what takes long is kept; empty: nowhere
+};
+
+/// Where lambda came from.
+struct LambdaChoice {
+  double value = 0.0;
+  bool by_rule = false;
+  double sigma = 0.0;  ///< the rule's noise; meaningful when by_rule
+};
+
+/// A board made ready to reconstruct: the nominal response of its geometry with the rows of dead ommatidia zero,
+/// lambda, the factor (kept or made) and the reconstructor.
+class ReadyEye {
+ public:
+  /// Takes from milliseconds to minutes; `progress` is asked throughout. Errors: those of nominal_response(),
+  /// lambda_by_rule() and Reconstructor::create(); interrupted.
+  [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const EyeRequest& request,
+                                                  const recon::Progress& progress);
+
+  [[nodiscard]] const recon::Reconstructor& reconstructor() const noexcept { return *reconstructor_; }
+  /// By ommatidium, 0 = sees nothing of the object plane by its geometry; a dead one may well see.
+  [[nodiscard]] const std::vector<std::uint8_t>& sees() const noexcept { return sees_; }
+  [[nodiscard]] const LambdaChoice& lambda() const noexcept { return lambda_; }
+  [[nodiscard]] FactorOrigin factor_origin() const noexcept { return factor_origin_; }
+  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+
+  /// Another number of iterations with the same factor. Not after forget_response().
+  [[nodiscard]] hal::Result<void> set_iterations(int iterations);
+  /// Gives back the memory that only set_iterations() needs: more than the frames themselves take.
+  void forget_response() noexcept { response_.reset(); }
+
+ private:
+  ReadyEye() = default;
+
+  std::unique_ptr<recon::Response> response_;  // dead rows zero
+  std::unique_ptr<recon::Reconstructor> reconstructor_;
+  std::vector<std::uint8_t> sees_;
+  LambdaChoice lambda_;
+  FactorOrigin factor_origin_ = FactorOrigin::made;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace compueye::firmware

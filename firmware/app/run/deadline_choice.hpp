@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// A frame of `iterations` takes fixed_ns + iterations * per_iteration_ns to solve on this machine.
+struct SolveTime {
+  double fixed_ns = 0.0;
+  double per_iteration_ns = 0.0;
+  [[nodiscard]] double of(int iterations) const noexcept { return fixed_ns + iterations * per_iteration_ns; }
+};
+
+/// How many iterations a deadline leaves room for, and why.
+struct DeadlineChoice {
+  double deadline_ms = 0.0;
+  int most_iterations = 0;   ///< what was asked for without a deadline
+  int iterations = 0;        ///< chosen, 1 .. most_iterations
+  bool fits = false;         ///< false: not even one iteration does
+  double solve_ms = 0.0;     ///< predicted for `iterations`
+  double age_ms = 0.0;       ///< predicted for `iterations`: exposure, waiting and solving
+  double least_ms = 0.0;     ///< the shortest deadline that one iteration meets
+  double for_most_ms = 0.0;  ///< the shortest deadline that most_iterations meet
+  /// "deadline 100 ms: 31 of 60 iterations, ..."
+  [[nodiscard]] std::string sentence() const;
+};
+
+/// Share of the deadline that the prediction may use up: the rest is for the sink and for a machine that is busy.
+inline constexpr double deadline_share = 0.8;
+
+/// The largest number of iterations whose predicted age stays within deadline_share of the deadline. The age of a frame
+/// is its exposure (one frame period), its solution, and, when the solver is slower than the frames come, up to one
+/// period that the newest frame waited for the solver.
+[[nodiscard]] DeadlineChoice choose_iterations(double deadline_ms, double period_ms, const SolveTime& time,
+                                               int most_iterations);
+
+/// Times real solves: `solve_ns(iterations)` solves one frame and says how long it took.
+using TimedSolve = std::function<hal::Result<std::int64_t>(int iterations)>;
+[[nodiscard]] hal::Result<SolveTime> measure_solve_time(const TimedSolve& solve_ns, int most_iterations);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,62 @@
+#include "firmware/app/run/run_options.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace compueye::firmware {
+namespace {
+
+using hal::ErrorCode;
+using hal::fail;
+using hal::Result;
+
+Result<void> need(bool ok, const std::string& option, const std::string& sentence) {
+  if (ok) return {};
+  return fail(ErrorCode::usage, option, sentence);
+}
+
+template <class Number>
+Result<void> within(const std::string& option, const std::optional<Number>& value, double least, bool open,
+                    double most) {
+  if (!value) return {};
+  const auto number = static_cast<double>(*value);
+  const bool ok = std::isfinite(number) && (open ? number > least : number >= least) && number <= most;
+  const auto text = [](double v) { return std::to_string(static_cast<std::int64_t>(v)); };
+  return need(
+      ok, option,
+      "is " + std::to_string(*value) + ", expected a number " +
+          (open ? "above " + text(least) + " and at most " + text(most) : "from " + text(least) + " to " + text(most)));
+}
+
+}  // namespace
+
+Result<void> RunOptions::check() const {
+  constexpr double longest_mm = 1e6, longest_ms = 1e9, most_frames = 1e15, most_iterations = 1e6, largest = 1e12;
+  for (const auto& checked :
+       {within("--frames", frames, 0, false, most_frames), within("--deadline", deadline_ms, 0, true, longest_ms),
+        within("--seed", std::optional(seed), 0, false, 9e18),
+        within("--scene-seed", std::optional(scene_seed), 0, false, 9e18),
+        within("--distance", distance_mm, 0, true, longest_mm),
+        within("--scene-distance", scene_distance_mm, 0, true, longest_mm),
+        within("--iterations", iterations, 1, false, most_iterations), within("--lambda", lambda, 0, false, largest),
+        within("--sigma", sigma, 0, false, largest),
+        need(!(lambda && sigma), "--sigma", "cannot go with --lambda: the noise is what lambda would be made from"),
+        need(!(deadline_ms && lossless), "--deadline",
+             "cannot go with --lossless, where frames wait for as long as it takes; leave one of them out"),
+        need(!(json && show.value_or(false)), "--show",
+             "cannot go with --json: both would write to the standard output"),
+        need(!(json && table != TableOutput::no), "--table",
+             "cannot go with --json: both would write to the standard output"),
+        need(out.empty() || output_format() != OutputFormat::none, "--out", "does nothing with --format none"),
+        need(!out.empty() || !format || *format == OutputFormat::none, "--format", "needs a folder: add --out DIR"),
+        need(!board.empty(), "--board", "is missing, for example --board boards/sim-8x8")}) {
+    if (!checked) return checked;
+  }
+  return {};
+}
+
+OutputFormat RunOptions::output_format() const noexcept {
+  return format.value_or(out.empty() ? OutputFormat::none : OutputFormat::png);
+}
+
+}  // namespace compueye::firmware

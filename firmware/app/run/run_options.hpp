@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+enum class OutputFormat : std::uint8_t { png, png16, npy, none };
+enum class TableOutput : std::uint8_t { no, header, row, both };
+
+/// What `compueye run` was asked for.
+struct RunOptions {
+  std::filesystem::path board;
+  std::optional<std::int64_t> frames;  ///< delivered pictures, 0 = until stopped; absent: the board's frames_per_scene
+  std::optional<double> deadline_ms;   ///< > 0
+  std::string scene;                   ///< empty: the board's
+  std::int64_t seed = 0;               ///< of the noise, >= 0
+  std::int64_t scene_seed = 0;         ///< of a built-in scene, >= 0
+  std::optional<double> distance_mm;   ///< of the object plane and the scene on it
+  std::optional<double> scene_distance_mm;  ///< of the scene alone
+  std::filesystem::path out;                ///< folder for pictures
+  std::optional<OutputFormat> format;       ///< absent: png with `out`, else none
+  std::optional<bool> show;                 ///< absent: when stdout is a terminal
+  bool lossless = false;
+  std::optional<std::int64_t> iterations;
+  std::optional<double> lambda;
+  std::optional<double> sigma;
+  std::filesystem::path sheet;
+  std::filesystem::path report;
+  TableOutput table = TableOutput::no;
+  bool json = false;
+
+  /// Contradictions and values out of range. Error usage names the option.
+  [[nodiscard]] hal::Result<void> check() const;
+  [[nodiscard]] OutputFormat output_format() const noexcept;
+};
+
+}  // namespace compueye::firmware

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/app/eye/kept_factor.hpp"
+#include "firmware/app/eye/picture_quality.hpp"
+#include "firmware/app/eye/ready_eye.hpp"
+#include "firmware/app/report/json_report.hpp"
+#include "firmware/app/run/deadline_choice.hpp"
+#include "firmware/pipeline/run_summary.hpp"
+
+namespace compueye::firmware {
+
+/// What is fixed before the first frame.
+struct EyeFigures {
+  std::string board;
+  std::string source;  ///< back end and serial
+  int ommatidia = 0;
+  int blind = 0;  ///< see nothing of the object plane
+  int dead = 0;   ///< listed as dead
+  int image_rows = 0;
+  int image_cols = 0;
+  double frame_rate_hz = 0.0;
+  LambdaChoice lambda;
+  double rho = 0.0;
+  recon::OperatingPoint point;
+  FactorOrigin factor = FactorOrigin::made;
+  std::uint64_t workspace_bytes = 0;
+  std::uint64_t table_bytes = 0;
+};
+
+/// Everything `compueye run` has to say when it is over.
+struct RunReport {
+  EyeFigures eye;
+  std::string scene;
+  std::int64_t seed = 0;
+  double distance_mm = 0.0;
+  bool lossless = false;
+  double setup_s = 0.0;
+  std::optional<DeadlineChoice> deadline;
+  RunSummary summary;
+  std::optional<PictureQuality> quality;  ///< mean over `measured` delivered frames
+  std::size_t measured = 0;
+  std::optional<PictureQuality> last_quality;  ///< of the last delivered frame
+  std::optional<PictureQuality> conventional;  ///< of one frame
+  std::vector<std::string> files;              ///< what was written
+  std::vector<std::string> notes;
+};
+
+/// For people: a few lines and a table of times.
+[[nodiscard]] std::string report_text(const RunReport& report);
+
+/// For machines: every figure, under keys with the unit in their name.
+[[nodiscard]] Json report_json(const RunReport& report);
+
+/// A table with a row a run, of columns as wide in every run, so that a script can put rows below one header.
+[[nodiscard]] std::string table_header();
+[[nodiscard]] std::string table_row(const RunReport& report);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,289 @@
+#include "firmware/app/run/run_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "firmware/app/eye/conventional_eye.hpp"
+#include "firmware/app/eye/ready_eye.hpp"
+#include "firmware/app/eye/scene_choice.hpp"
+#include "firmware/app/eye/simulated_board.hpp"
+#include "firmware/app/report/error_report.hpp"
+#include "firmware/app/report/progress_reporter.hpp"
+#include "firmware/app/report/visible_text.hpp"
+#include "firmware/app/run/frame_keeper.hpp"
+#include "firmware/app/run/run_outputs.hpp"
+#include "firmware/app/run/run_report.hpp"
+#include "firmware/app/run/run_sheet.hpp"
+#include "firmware/app/run/run_watch.hpp"
+#include "firmware/app/run/stop_signals.hpp"
+#include "firmware/app/run/trial.hpp"
+#include "firmware/files/atomic_file.hpp"
+#include "firmware/pipeline/pipeline.hpp"
+#include "firmware/pipeline/reconstructor_solver.hpp"
+#include "sim/scene_truth.hpp"
+#include "sim/simulated_eye.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::ErrorCode;
+using hal::Result;
+
+/// From the board to the report, step by step; each step is a member, and what the next ones need stays here.
+class RunSession {
+ public:
+  explicit RunSession(const RunOptions& options) : options_(options) {}
+
+  Result<void> run() {
+    return prepare()
+        .and_then([this] { return make_eye(); })
+        .and_then([this] { return fit(); })
+        .and_then([this] { return run_pipeline(); })
+        .and_then([this] { return compare_or_note(); })
+        .and_then([this] { return print(); })
+        .and_then([this] { return verdict(); });
+  }
+  /// Whether stdout has the report.
+  [[nodiscard]] bool printed() const noexcept { return printed_; }
+
+ private:
+  Result<void> prepare();
+  Result<void> make_eye();
+  Result<void> make_source();
+  Result<void> fit();
+  Result<void> run_pipeline();
+  Result<void> compare_or_note();
+  Result<void> compare();
+  Result<void> measure_quality();
+  Result<void> write_sheet();
+  Result<void> print();
+  Result<void> verdict() const;
+  void note(const std::string& sentence);
+  void fill_figures();
+  [[nodiscard]] PipelineSettings pipeline_settings() const;
+  [[nodiscard]] std::uint64_t frames() const {
+    return static_cast<std::uint64_t>(options_.frames.value_or(board_.scene.frames_per_scene));
+  }
+
+  const RunOptions& options_;
+  hal::MonotonicClock clock_;
+  StopSignals signals_;
+  Board board_;
+  sim::Scene scene_;
+  hal::Image truth_;
+  std::optional<ReadyEye> eye_;
+  std::unique_ptr<sim::SimulatedEye> source_;
+  std::unique_ptr<FrameKeeper> keeper_;
+  hal::Image conventional_;
+  RunReport report_;
+  bool printed_ = false;
+};
+
+void RunSession::note(const std::string& sentence) {
+  report_.notes.push_back(sentence);
+  const std::string line = "compueye: note: " + visible_text(sentence) + "\n";
+  std::fputs(line.c_str(), stderr);
+}
+
+Result<void> RunSession::prepare() {
+  auto board = load_board(options_.board);
+  if (!board) return tl::unexpected(std::move(board.error()));
+  board_ = std::move(*board);
+  if (options_.distance_mm) board_.object.distance_mm = *options_.distance_mm;
+  if (auto tried = try_outputs(options_); !tried) return tried;
+  auto scene = choose_scene(
+      board_, {options_.scene, static_cast<std::uint64_t>(options_.scene_seed), options_.scene_distance_mm});
+  if (!scene) return tl::unexpected(std::move(scene.error()));
+  scene_ = std::move(*scene);
+  auto truth = sim::scene_truth(scene_, board_.object);
+  if (!truth) return tl::unexpected(std::move(truth.error()));
+  truth_ = std::move(*truth);
+  report_.scene = scene_.name;
+  report_.seed = options_.seed;
+  report_.distance_mm = board_.object.distance_mm;
+  report_.lossless = options_.lossless;
+  return {};
+}
+
+Result<void> RunSession::make_eye() {
+  const std::int64_t begin_ns = clock_.now_ns();
+  {
+    ProgressReporter progress(clock_);
+    const auto ask = [&](std::string_view what, double done, double total) {
+      progress.update(what, done, total);
+      return !signals_.requested().load(std::memory_order_relaxed);
+    };
+    EyeRequest request{std::nullopt, options_.lambda, options_.sigma, board_.folder / ".cache"};
+    if (options_.iterations) request.iterations = static_cast<int>(*options_.iterations);
+    auto eye = ReadyEye::make(board_, request, ask);
+    if (!eye) return tl::unexpected(std::move(eye.error()));
+    eye_ = std::move(*eye);
+    progress.update("simulated eye", 0.0, 0.0);
+    if (auto made = make_source(); !made) return made;
+    progress.finish();
+  }
+  for (const std::string& sentence : eye_->notes()) note(sentence);
+  report_.setup_s = static_cast<double>(clock_.now_ns() - begin_ns) / 1e9;
+  return {};
+}
+
+Result<void> RunSession::make_source() {
+  auto settings = simulated_eye_settings(board_, scene_, static_cast<std::uint64_t>(options_.seed));
+  if (!options_.lossless) settings.frame_rate_hz = board_.source.frame_rate_hz;
+  // Without a limit the frames read ahead of the last one would be made only to be thrown away.
+  if (options_.lossless && frames() > 0) settings.frame_limit = frames();
+  auto source = sim::SimulatedEye::create(std::move(settings), clock_);
+  if (!source) return tl::unexpected(std::move(source.error()));
+  source_ = std::move(*source);
+  return {};
+}
+
+Result<void> RunSession::fit() {
+  const auto frame =
+      take_trial_frame(board_, correction_settings(board_, eye_->sees()), *source_, clock_, signals_.requested());
+  if (!frame) return tl::unexpected(frame.error());
+  if (options_.deadline_ms) {
+    const auto choice = fit_deadline(*options_.deadline_ms, 1e3 / board_.source.frame_rate_hz, *frame, *eye_, clock_);
+    if (!choice) return tl::unexpected(choice.error());
+    report_.deadline = *choice;
+    note(choice->sentence());
+  }
+  eye_->forget_response();
+  if (!signals_.requested().load(std::memory_order_relaxed)) return {};
+  return hal::fail(ErrorCode::interrupted, board_.name, "stopped before the first frame");
+}
+
+PipelineSettings RunSession::pipeline_settings() const {
+  PipelineSettings settings;
+  settings.pacing = options_.lossless ? Pacing::every_frame : Pacing::newest_wins;
+  settings.frames = frames();
+  if (options_.deadline_ms) settings.deadline_ns = std::llround(*options_.deadline_ms * 1e6);
+  if (options_.lossless) settings.queue_capacity = 1;
+  // The simulated device counts its time from its own power-on, as a real one does.
+  settings.device_clock = DeviceClock::free_running;
+  settings.silence_limit_ns += static_cast<std::int64_t>(2e9 / std::max(board_.source.frame_rate_hz, 1e-3));
+  settings.correction = correction_settings(board_, eye_->sees());
+  return settings;
+}
+
+void RunSession::fill_figures() {
+  const recon::Reconstructor& r = eye_->reconstructor();
+  report_.eye = {.board = board_.name,
+                 .source = board_.source.kind + " " + board_.source.serial,
+                 .ommatidia = board_.eye.ommatidia(),
+                 .blind = static_cast<int>(std::count(eye_->sees().begin(), eye_->sees().end(), 0)),
+                 .dead = static_cast<int>(board_.sensor.dead.size()),
+                 .image_rows = r.image_rows(),
+                 .image_cols = r.image_cols(),
+                 .frame_rate_hz = board_.source.frame_rate_hz,
+                 .lambda = eye_->lambda(),
+                 .rho = r.plan().rho,
+                 .point = r.operating_point(),
+                 .factor = eye_->factor_origin(),
+                 .workspace_bytes = r.required_bytes(),
+                 .table_bytes = r.table_bytes()};
+}
+
+Result<void> RunSession::run_pipeline() {
+  fill_figures();
+  ReconstructorSolver solver(eye_->reconstructor());
+  const auto sinks = make_sinks(options_, clock_, report_.files);
+  keeper_ = std::make_unique<FrameKeeper>(solver.format(), frames());
+  auto pipeline = Pipeline::create(pipeline_settings(), *source_, solver, *sinks, clock_, keeper_.get());
+  if (!pipeline) return tl::unexpected(std::move(pipeline.error()));
+  std::unique_ptr<RunWatch> watch;
+  if (!shows_pictures(options_)) watch = std::make_unique<RunWatch>(*keeper_, frames());
+  report_.summary = pipeline->run(signals_.requested());
+  return {};
+}
+
+Result<void> RunSession::measure_quality() {
+  if (keeper_->kept() == 0) return {};
+  const auto view = [&](std::span<const float> pixels) { return recon::PictureView(pixels, truth_.rows, truth_.cols); };
+  PictureQuality mean;
+  for (std::size_t i = 0; i < keeper_->kept(); ++i) {
+    const auto quality = quality_of(view(keeper_->picture(i)), truth_);
+    if (!quality) return tl::unexpected(quality.error());
+    mean.nmse += quality->nmse;
+    mean.psnr_db += quality->psnr_db;
+    mean.ssim += quality->ssim;
+  }
+  const auto count = static_cast<double>(keeper_->kept());
+  report_.quality = PictureQuality{mean.nmse / count, mean.psnr_db / count, mean.ssim / count};
+  report_.measured = keeper_->kept();
+  const auto last = quality_of(view(keeper_->last()), truth_);
+  if (!last) return tl::unexpected(last.error());
+  report_.last_quality = *last;
+  return {};
+}
+
+/// A sheet that cannot be written must not cost the summary of the run.
+Result<void> RunSession::compare_or_note() {
+  if (auto compared = compare(); !compared && !report_.summary.error) {
+    report_.summary.error = std::move(compared.error());
+  }
+  return {};
+}
+
+Result<void> RunSession::compare() {
+  if (auto measured = measure_quality(); !measured) return measured;
+  if (keeper_->delivered() == 0) return {};
+  auto conventional = conventional_picture(board_, scene_, static_cast<std::uint64_t>(options_.seed));
+  if (!conventional) {
+    note("the conventional eye is left out: " + conventional.error().text());
+  } else {
+    conventional_ = std::move(*conventional);
+    auto quality = quality_of(conventional_, truth_);
+    if (!quality) return tl::unexpected(std::move(quality.error()));
+    report_.conventional = *quality;
+  }
+  return write_sheet();
+}
+
+Result<void> RunSession::write_sheet() {
+  if (options_.sheet.empty()) return {};
+  hal::Image last(truth_.rows, truth_.cols);
+  std::copy(keeper_->last().begin(), keeper_->last().end(), last.pixels.begin());
+  report_.files.push_back(options_.sheet.string());
+  return write_run_sheet(options_.sheet, report_, truth_, conventional_, last);
+}
+
+Result<void> RunSession::print() {
+  const std::string json = json_text(report_json(report_));
+  if (!options_.report.empty()) {
+    if (auto written = write_file_atomically(options_.report, std::as_bytes(std::span(json))); !written) return written;
+  }
+  printed_ = true;
+  if (options_.json) return print_text(json);
+  if (options_.table == TableOutput::no) return print_text(report_text(report_));
+  return print_text((options_.table == TableOutput::both ? table_header() : std::string()) + table_row(report_));
+}
+
+Result<void> RunSession::verdict() const {
+  const RunSummary& s = report_.summary;
+  if (s.error) return tl::unexpected(*s.error);
+  if (s.frames.balanced()) return {};
+  return hal::fail(
+      ErrorCode::mismatch, "pipeline",
+      fmt::format("the books do not balance: {} produced, {} delivered, {} dropped; this is a defect worth "
+                  "reporting",
+                  s.frames.produced, s.frames.delivered, s.frames.total_dropped()));
+}
+
+}  // namespace
+
+Result<void> run_session(const RunOptions& options) {
+  if (options.table == TableOutput::header) return print_text(table_header());
+  if (auto checked = options.check(); !checked) return checked;
+  RunSession session(options);
+  auto done = session.run();
+  if (done || !options.json || session.printed()) return done;
+  if (auto printed = print_text(json_text(json_of(done.error()))); !printed) return printed;
+  return done;
+}
+
+}  // namespace compueye::firmware

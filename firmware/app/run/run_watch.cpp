@@ -1,0 +1,32 @@
+#include "firmware/app/run/run_watch.hpp"
+
+#include <chrono>
+
+#include "firmware/app/report/progress_reporter.hpp"
+#include "hal/clock.hpp"
+
+namespace compueye::firmware {
+
+RunWatch::RunWatch(const FrameKeeper& keeper, std::uint64_t frames)
+    : keeper_(keeper), thread_([this, frames] { watch(frames); }) {}
+
+RunWatch::~RunWatch() {
+  {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+  }
+  ended_.notify_all();
+  thread_.join();
+}
+
+void RunWatch::watch(std::uint64_t frames) {
+  constexpr std::chrono::milliseconds every{100};
+  const hal::MonotonicClock clock;
+  ProgressReporter progress(clock);
+  std::unique_lock lock(mutex_);
+  while (!ended_.wait_for(lock, every, [this] { return over_; })) {
+    progress.update("frames", static_cast<double>(keeper_.delivered()), static_cast<double>(frames));
+  }
+}
+
+}  // namespace compueye::firmware

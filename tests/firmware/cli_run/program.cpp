@@ -1,0 +1,84 @@
+#include "tests/firmware/cli_run/program.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <system_error>
+#include <thread>
+
+#include "tests/firmware/temporary_folder.hpp"
+
+extern char** environ;
+
+namespace compueye::test {
+namespace {
+
+constexpr std::chrono::seconds limit{200};
+constexpr std::chrono::milliseconds look_again{2};
+
+std::filesystem::path make_folder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "compueye-program-XXXXXX").string();
+  return ::mkdtemp(pattern.data());
+}
+
+}  // namespace
+
+Program::Program(const std::vector<std::string>& arguments) : folder_(make_folder()) {
+  std::vector<std::string> words{COMPUEYE_BINARY};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const std::string out = (folder_ / "out").string(), err = (folder_ / "err").string();
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  if (::posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ) != 0) over_ = true;
+  posix_spawn_file_actions_destroy(&actions);
+}
+
+Program::~Program() {
+  if (running()) {
+    signal(SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+void Program::signal(int number) const {
+  if (!over_) ::kill(pid_, number);
+}
+
+bool Program::running() {
+  if (!over_ && ::waitpid(pid_, &status_, WNOHANG) == pid_) over_ = true;
+  return !over_;
+}
+
+Ended Program::wait() {
+  Ended ended;
+  const auto began = std::chrono::steady_clock::now();
+  while (running()) {
+    if (std::chrono::steady_clock::now() - began > limit) {
+      ended.timed_out = true;
+      signal(SIGKILL);
+    }
+    std::this_thread::sleep_for(look_again);
+  }
+  if (WIFEXITED(status_)) ended.exit_code = WEXITSTATUS(status_);
+  ended.out = bytes_of(folder_ / "out");
+  ended.err = bytes_of(folder_ / "err");
+  return ended;
+}
+
+Ended compueye(const std::vector<std::string>& arguments) {
+  return Program(arguments).wait();
+}
+
+}  // namespace compueye::test

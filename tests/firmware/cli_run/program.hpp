@@ -1,0 +1,42 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace compueye::test {
+
+/// How a run of the real binary ended. A test that waits for ever would say nothing, so every wait has a limit; a
+/// program that passes it is killed and `timed_out`.
+struct Ended {
+  int exit_code = -1;  ///< -1: killed by a signal
+  bool timed_out = false;
+  std::string out;
+  std::string err;
+};
+
+/// The `compueye` binary of this build, started with `arguments` and neither terminal nor input.
+class Program {
+ public:
+  explicit Program(const std::vector<std::string>& arguments);
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  ~Program();
+
+  void signal(int number) const;
+  [[nodiscard]] bool running();
+  [[nodiscard]] Ended wait();
+
+ private:
+  pid_t pid_ = -1;
+  bool over_ = false;
+  int status_ = 0;
+  std::filesystem::path folder_;
+};
+
+/// Runs it to its end.
+[[nodiscard]] Ended compueye(const std::vector<std::string>& arguments);
+
+}  // namespace compueye::test

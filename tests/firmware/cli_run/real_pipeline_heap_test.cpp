@@ -1,0 +1,94 @@
+#include <doctest/doctest.h>
+
+#include <atomic>
+
+#include "firmware/app/eye/ready_eye.hpp"
+#include "firmware/app/eye/scene_choice.hpp"
+#include "firmware/app/eye/simulated_board.hpp"
+#include "firmware/app/run/frame_keeper.hpp"
+#include "firmware/pipeline/pipeline.hpp"
+#include "firmware/pipeline/reconstructor_solver.hpp"
+#include "firmware/sinks/null_sink.hpp"
+#include "tests/memory/allocation_counter.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+using compueye::tests::heap_use_of_process;
+using compueye::tests::HeapUse;
+
+namespace {
+
+/// Reads the counters at the first read, when every thread exists, and at each frame written.
+class CountingSource final : public hal::SampleSource {
+ public:
+  explicit CountingSource(hal::SampleSource& eye) : eye_(eye) {}
+  HeapUse before;
+  std::uint64_t reads = 0;
+
+ private:
+  const hal::SourceDescription& do_describe() const noexcept override { return eye_.describe(); }
+  hal::Result<void> do_start() override { return eye_.start(); }
+  hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override {
+    if (reads++ == 0) before = heap_use_of_process();
+    return eye_.read(deadline_ns);
+  }
+  void do_stop() noexcept override { eye_.stop(); }
+  hal::FrameAccount do_account() const noexcept override { return eye_.account(); }
+
+  hal::SampleSource& eye_;
+};
+
+class CountingObserver final : public FrameObserver {
+ public:
+  CountingObserver(FrameKeeper& keeper, const CountingSource& source) : keeper_(keeper), source_(source) {}
+  HeapUse used;
+  void published(const PublishedFrame& frame) noexcept override {
+    keeper_.published(frame);
+    used = heap_use_of_process() - source_.before;
+  }
+
+ private:
+  FrameKeeper& keeper_;
+  const CountingSource& source_;
+};
+
+}  // namespace
+
+TEST_CASE("the whole runtime, with the simulated eye and the real solver, does not use the heap while frames come") {
+  auto board = load_board(COMPUEYE_SOURCE_DIR "/boards/sim-8x8");
+  REQUIRE(board.has_value());
+  board->sensor.dead = {5, 9};
+  for (const recon::SolverKind solver_kind : {recon::SolverKind::admm, recon::SolverKind::tikhonov}) {
+    board->reconstruction.solver = solver_kind;
+    if (solver_kind == recon::SolverKind::tikhonov) board->reconstruction.constraint = recon::ConstraintKind::none;
+    board->reconstruction.iterations = 20;
+    const auto eye = ReadyEye::make(*board, {}, {});
+    REQUIRE_MESSAGE(eye.has_value(), eye.error().text());
+    hal::MonotonicClock clock;
+    auto settings = simulated_eye_settings(*board, choose_scene(*board, {}).value(), 1);
+    // A frame that is lost on the way and a channel that dies meanwhile belong to the frame path too.
+    settings.faults.lost_frames = {20, 21};
+    settings.faults.invalid_channels.push_back({30, 15});
+    const auto simulated = sim::SimulatedEye::create(std::move(settings), clock);
+    REQUIRE(simulated.has_value());
+    CountingSource source(**simulated);
+    ReconstructorSolver solver(eye->reconstructor());
+    FrameKeeper keeper(solver.format(), 0, 4096);
+    CountingObserver observer(keeper, source);
+    NullSink sink;
+    PipelineSettings pipeline_settings;
+    pipeline_settings.pacing = Pacing::every_frame;
+    pipeline_settings.frames = 60;
+    pipeline_settings.device_clock = DeviceClock::free_running;
+    pipeline_settings.correction = correction_settings(*board, eye->sees());
+    auto pipeline = Pipeline::create(pipeline_settings, source, solver, sink, clock, &observer);
+    REQUIRE_MESSAGE(pipeline.has_value(), pipeline.error().text());
+    const std::atomic<bool> stop{false};
+    const RunSummary summary = pipeline->run(stop);
+    CHECK(summary.frames.delivered == 60);
+    CHECK(summary.frames.drops(hal::DropReason::transport_gap) == 2);
+    CHECK(summary.masked_max == 3);
+    CHECK(observer.used.allocations == 0);
+    CHECK(observer.used.frees == 0);
+  }
+}

@@ -1,0 +1,73 @@
+#include <doctest/doctest.h>
+
+#include <fstream>
+
+#include "tests/firmware/cli_run/copied_board.hpp"
+
+using namespace compueye::test;
+
+namespace {
+
+const std::vector<std::string> one_frame{"--frames", "1", "--lossless"};
+
+double nmse(const nlohmann::json& json) {
+  return json["quality"]["nmse"].get<double>();
+}
+
+}  // namespace
+
+TEST_CASE("the factor is made once and then kept") {
+  const CopiedBoard board;
+  const auto first = board.run_json(one_frame);
+  CHECK(first["factor"] == "made");
+  CHECK(board.factors().size() == 1);
+  const auto second = board.run_json(one_frame);
+  CHECK(second["factor"] == "kept");
+  CHECK(nmse(second) == nmse(first));
+}
+
+TEST_CASE("a board whose geometry changed gets a factor of its own, and the old one is refused under the new name") {
+  const CopiedBoard board;
+  board.run_json(one_frame);
+  const auto old_factor = board.factors().at(0);
+  board.change("acceptance_angle_deg = 8", "acceptance_angle_deg = 7.5");
+  const auto changed = board.run_json(one_frame);
+  CHECK(changed["factor"] == "made");
+  REQUIRE(board.factors().size() == 2);
+
+  for (const auto& path : board.factors()) {
+    if (path == old_factor) continue;
+    std::filesystem::copy_file(old_factor, path, std::filesystem::copy_options::overwrite_existing);
+  }
+  const auto refused = board.run_json(one_frame);
+  CHECK(refused["factor"] == "replaced");
+  CHECK(contains(refused["notes"].dump(), "another response"));
+  CHECK(nmse(refused) == nmse(changed));
+  CHECK(board.run_json(one_frame)["factor"] == "kept");
+}
+
+TEST_CASE("whatever is damaged in the cache is computed again, to the same picture") {
+  const CopiedBoard board;
+  const auto sound = board.run_json(one_frame);
+  for (std::size_t number = 0; number < 5; ++number) {
+    CAPTURE(number);
+    for (const auto& entry : std::filesystem::directory_iterator(board.cache())) {
+      const std::string bytes = bytes_of(entry.path());
+      std::ofstream(entry.path(), std::ios::binary) << damaged(bytes, number);
+    }
+    const auto json = board.run_json(one_frame);
+    CHECK(json["operating_point"]["lambda"] == sound["operating_point"]["lambda"]);
+    CHECK(nmse(json) == nmse(sound));
+    CHECK(json["factor"] == "replaced");
+  }
+  CHECK(board.run_json(one_frame)["factor"] == "kept");
+}
+
+TEST_CASE("a cache that cannot be written costs a warning and nothing else") {
+  const CopiedBoard board;
+  std::ofstream(board.cache()) << "a file where the folder should be";
+  const auto json = board.run_json(one_frame);
+  CHECK(json["factor"] == "made");
+  CHECK(contains(json["notes"].dump(), "cannot be kept"));
+  CHECK(json["frames"]["delivered"] == 1);
+}

@@ -1,0 +1,101 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "firmware/app/board/board.hpp"
+#include "firmware/app/eye/ready_eye.hpp"
+#include "firmware/files/npy.hpp"
+#include "firmware/pipeline/reconstructor_solver.hpp"
+#include "recon/metrics.hpp"
+#include "tests/firmware/cli_run/copied_board.hpp"
+
+using namespace compueye;
+using namespace compueye::test;
+
+namespace {
+
+firmware::SampleArray simulated(const CopiedBoard& board, std::vector<std::string> more) {
+  const auto file = board.outside("y.npy");
+  more.insert(more.begin(), {"simulate", "--board", board.path().string(), "--out", file.string()});
+  const Ended ended = compueye::test::compueye(more);
+  REQUIRE_MESSAGE(ended.exit_code == 0, ended.err);
+  auto samples = firmware::read_samples(file);
+  REQUIRE(samples.has_value());
+  return *samples;
+}
+
+}  // namespace
+
+TEST_CASE("simulated samples reconstruct to the scene they were made from") {
+  const CopiedBoard board;
+  const auto truth_file = board.outside("x.npy");
+  const auto samples = simulated(board, {"--truth", truth_file.string()});
+  CHECK(samples.channels == 64);
+  CHECK_FALSE(samples.has_frame_axis);
+  const auto loaded = firmware::load_board(board.path());
+  REQUIRE(loaded.has_value());
+  const auto eye = firmware::ReadyEye::make(*loaded, {}, {});
+  REQUIRE(eye.has_value());
+  const std::vector<float> y(samples.values.begin(), samples.values.end());
+  hal::Image picture(16, 16);
+  firmware::ReconstructorSolver(eye->reconstructor()).solve(y, std::vector<float>(64, 1.0F), picture.pixels);
+  const auto truth = firmware::read_picture(truth_file);
+  REQUIRE(truth.has_value());
+  CHECK(recon::nmse(picture, *truth).value() < 1e-3);
+}
+
+TEST_CASE("frames, seeds, codes and the noise-free signal") {
+  const CopiedBoard board;
+  const auto three = simulated(board, {"--frames", "3", "--seed", "4"});
+  CHECK(three.has_frame_axis);
+  CHECK(three.frames == 3);
+  CHECK(three.values == simulated(board, {"--frames", "3", "--seed", "4"}).values);
+  CHECK(three.values != simulated(board, {"--frames", "3", "--seed", "5"}).values);
+
+  const auto exact = simulated(board, {"--noise-free"});
+  const auto codes = simulated(board, {"--codes", "--noise-free"});
+  const double lsb = 128.0 / 65536.0, dark = 64.0;
+  for (std::size_t m = 0; m < exact.values.size(); ++m) {
+    CHECK(codes.values[m] == std::round(codes.values[m]));
+    CHECK(std::abs((codes.values[m] - dark) * lsb - exact.values[m]) <= 0.51 * lsb);
+  }
+}
+
+TEST_CASE("channels that tell nothing are NaN with weight zero") {
+  const CopiedBoard board;
+  board.change("dead = []", "dead = [7]");
+  const auto weights_file = board.outside("w.npy");
+  const auto samples = simulated(board, {"--weights", weights_file.string()});
+  const auto weights = firmware::read_samples(weights_file);
+  REQUIRE(weights.has_value());
+  for (std::size_t m = 0; m < samples.values.size(); ++m) {
+    CHECK(std::isnan(samples.values[m]) == (m == 7));
+    CHECK(weights->values[m] == (m == 7 ? 0.0 : 1.0));
+  }
+}
+
+TEST_CASE("--explain says which effects are on and off, and --json the same in one object") {
+  const CopiedBoard board;
+  const Ended text =
+      compueye::test::compueye({"simulate", "--board", board.path().string(), "--explain", "--noise-free"});
+  CHECK(text.exit_code == 0);
+  CHECK(contains(text.out, "read noise"));
+  CHECK(contains(text.out, "off"));
+  const Ended json = compueye::test::compueye({"simulate", "--board", board.path().string(), "--explain", "--json"});
+  const auto object = nlohmann::json::parse(json.out, nullptr, false);
+  REQUIRE_FALSE(object.is_discarded());
+  for (const auto& effect : object["effects"]) {
+    if (effect["name"] == "read noise") CHECK(effect["on"] == true);
+  }
+  CHECK(object["effects"].size() >= 5);
+}
+
+TEST_CASE("wrong usage of simulate is refused") {
+  const CopiedBoard board;
+  const std::string path = board.path().string();
+  CHECK(compueye::test::compueye({"simulate", "--board", path}).exit_code == 2);
+  CHECK(compueye::test::compueye({"simulate", "--board", path, "--out", "y.npy", "--frames", "0"}).exit_code == 2);
+  CHECK(compueye::test::compueye({"simulate", "--board", path, "--out", "y.npy", "--distance", "nan"}).exit_code == 2);
+  const auto blocked = board.path() / "board.toml" / "y.npy";
+  CHECK(compueye::test::compueye({"simulate", "--board", path, "--out", blocked.string()}).exit_code == 1);
+}
