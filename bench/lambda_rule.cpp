@@ -124,7 +124,7 @@ class Eye {
     const std::size_t bytes = solver.required_bytes();
     auto* memory = static_cast<std::byte*>(::operator new (bytes, std::align_val_t{64}));
     hal::Image picture(truth.rows, truth.cols);
-    solver.solve(y, {}, {memory, bytes}, picture.pixels);
+    (void)solver.solve(y, {}, {memory, bytes}, picture.pixels);
     ::operator delete (memory, std::align_val_t{64});
     return recon::nmse(truth, picture).value();
   }
