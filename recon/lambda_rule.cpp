@@ -10,8 +10,8 @@
 namespace compueye::recon {
 namespace {
 
-constexpr double pixel_factor = 0.8;
-constexpr double dct_factor = 0.45;
+constexpr double pixel_factor = 1.1;
+constexpr double dct_factor = 0.4;
 constexpr double expected_pixel_deviation = 0.35;
 /// Even without noise a little shrinkage keeps directions that the eye does not see from running away.
 constexpr double least_share_of_norm = 1e-6;
