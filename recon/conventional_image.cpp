@@ -23,8 +23,9 @@ std::vector<Centroid> centroids(const Response& response, std::span<const double
     response.for_each_in_row(m, [&](std::int32_t pixel, double value) {
       const double w = std::abs(value);
       weight += w;
-      row += w * (pixel / image_cols);
-      col += w * (pixel % image_cols);
+      const std::int32_t pixel_row = pixel / image_cols, pixel_col = pixel % image_cols;
+      row += w * pixel_row;
+      col += w * pixel_col;
     });
     found.push_back({row / weight, col / weight, m});
   }

@@ -160,9 +160,9 @@ Result<double> ssim(const PictureView& picture, const PictureView& truth) {
 Result<double> michelson_contrast(const PictureView& picture, std::span<const std::int32_t> bright,
                                   std::span<const std::int32_t> dark) {
   if (auto ok = check("picture", picture); !ok) return tl::unexpected(ok.error());
-  const auto high = mean_at(picture, bright, "bright bars");
+  auto high = mean_at(picture, bright, "bright bars");
   if (!high) return high;
-  const auto low = mean_at(picture, dark, "dark bars");
+  auto low = mean_at(picture, dark, "dark bars");
   if (!low) return low;
   const double sum = *high + *low;
   if (*high == 0.0 && *low == 0.0) return 0.0;

@@ -54,9 +54,10 @@ class MirrorSearch {
   [[nodiscard]] Point centroid(int m) const {
     double sum = 0.0, by_row = 0.0, by_col = 0.0;
     response_.for_each_in_row(m, [&](std::int32_t n, double v) {
+      const std::int32_t row = n / image_cols_, col = n % image_cols_;
       sum += std::abs(v);
-      by_row += std::abs(v) * (n / image_cols_);
-      by_col += std::abs(v) * (n % image_cols_);
+      by_row += std::abs(v) * row;
+      by_col += std::abs(v) * col;
     });
     if (!(sum > 0.0)) return {};
     return {by_row / sum, by_col / sum};

@@ -16,7 +16,7 @@ using hal::fail;
 
 struct Generator {
   BuiltInScene scene;
-  hal::Result<hal::Image> (*render)(int rows, int cols, std::uint64_t seed);
+  hal::Result<hal::Image> (*render)(int rows, int cols, std::uint64_t seed) = nullptr;
 };
 
 constexpr std::array<Generator, 5> generators{{
@@ -42,7 +42,8 @@ constexpr std::array<Generator, 5> generators{{
 
 constexpr auto listed = [] {
   std::array<BuiltInScene, generators.size()> scenes{};
-  for (std::size_t i = 0; i < generators.size(); ++i) scenes[i] = generators[i].scene;
+  std::size_t i = 0;
+  for (const Generator& generator : generators) scenes[i++] = generator.scene;
   return scenes;
 }();
 

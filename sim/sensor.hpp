@@ -52,8 +52,8 @@ class Sensor {
 
   /// Writes the codes of one frame; true when at least one channel reached the largest code. `signals`, `levels_lsb`
   /// (scratch) and `codes` have the same size. Same seed and frame, same codes. Neither allocates nor throws.
-  bool digitise(std::span<const double> signals, std::uint64_t seed, std::uint64_t frame, std::span<double> levels_lsb,
-                std::span<std::int32_t> codes) const noexcept;
+  [[nodiscard]] bool digitise(std::span<const double> signals, std::uint64_t seed, std::uint64_t frame,
+                              std::span<double> levels_lsb, std::span<std::int32_t> codes) const noexcept;
 
  private:
   explicit Sensor(const SensorSettings& settings);

@@ -58,11 +58,11 @@ class SimulatedEye final : public hal::SampleSource {
   SimulatedEye(SimulatedEyeSettings settings, Sensor sensor, std::vector<std::vector<double>> signals,
                hal::Clock& clock);
 
-  const hal::SourceDescription& do_describe() const noexcept override { return description_; }
+  [[nodiscard]] const hal::SourceDescription& do_describe() const noexcept override { return description_; }
   hal::Result<void> do_start() override;
   hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override;
   void do_stop() noexcept override;
-  hal::FrameAccount do_account() const noexcept override { return account_; }
+  [[nodiscard]] hal::FrameAccount do_account() const noexcept override { return account_; }
 
   [[nodiscard]] bool paced() const noexcept { return settings_.frame_rate_hz > 0.0; }
   [[nodiscard]] std::int64_t exposure_start_ns(std::uint64_t frame) const noexcept;

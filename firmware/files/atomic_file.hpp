@@ -29,6 +29,8 @@ class AtomicFile {
  public:
   [[nodiscard]] static hal::Result<AtomicFile> create(const std::filesystem::path& path);
 
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&& other) noexcept;
   ~AtomicFile();

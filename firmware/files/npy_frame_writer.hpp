@@ -21,6 +21,8 @@ class NpyFrameWriter {
   /// Errors: usage (rows or cols < 1), those of AtomicFile, unsupported for a device or pipe.
   [[nodiscard]] static hal::Result<NpyFrameWriter> create(const std::filesystem::path& path, int rows, int cols);
 
+  NpyFrameWriter(const NpyFrameWriter&) = delete;
+  NpyFrameWriter& operator=(const NpyFrameWriter&) = delete;
   NpyFrameWriter(NpyFrameWriter&&) noexcept = default;
   NpyFrameWriter& operator=(NpyFrameWriter&&) noexcept = default;
   /// Without close() nothing is kept.

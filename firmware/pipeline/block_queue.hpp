@@ -29,6 +29,7 @@ class BlockQueue {
   }
   BlockQueue(const BlockQueue&) = delete;
   BlockQueue& operator=(const BlockQueue&) = delete;
+  ~BlockQueue() = default;
 
   /// Writer: the block to fill, the same one again until it is pushed. Under every_frame it waits until there is room,
   /// so that push() never has to. nullptr after abort() or close().

@@ -169,6 +169,7 @@ RunSummary Pipeline::run(const std::atomic<bool>& stop) {
   s.correction.restart();
 
   RunControl control(stop, s.raw, s.corrected, s.pictures);
+  // NOLINTNEXTLINE(modernize-make-unique): in C++17 manner it cannot fill an aggregate, and clang 14 knows no other.
   const auto stages = std::unique_ptr<Stages>(
       new Stages{AcquireStage(s.settings, s.source, s.clock, control, s.raw),
                  CorrectStage(s.settings, s.correction, s.clock, control, s.raw, s.corrected),

@@ -27,6 +27,8 @@ class Pipeline {
                                                     FrameSolver& solver, hal::FrameSink& sink, hal::Clock& clock,
                                                     FrameObserver* observer = nullptr);
 
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
   Pipeline(Pipeline&&) noexcept;
   Pipeline& operator=(Pipeline&&) noexcept;
   ~Pipeline();

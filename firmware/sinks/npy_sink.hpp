@@ -14,6 +14,8 @@ class NpySink final : public hal::FrameSink {
  public:
   /// The folder of `file` is made when it is missing.
   explicit NpySink(std::filesystem::path file) : path_(std::move(file)) {}
+  NpySink(const NpySink&) = delete;
+  NpySink& operator=(const NpySink&) = delete;
   ~NpySink() override;
 
   /// Errors: usage (already open), those of NpyFrameWriter::create().

@@ -19,6 +19,8 @@ class PngSequenceSink final : public hal::FrameSink {
  public:
   /// `bits` is 8 or 16.
   explicit PngSequenceSink(std::filesystem::path folder, int bits = 8) : folder_(std::move(folder)), bits_(bits) {}
+  PngSequenceSink(const PngSequenceSink&) = delete;
+  PngSequenceSink& operator=(const PngSequenceSink&) = delete;
   ~PngSequenceSink() override;
 
   /// Makes the folder when it is missing and tries whether it can be written. Errors: usage (bits, size, already open),

@@ -88,9 +88,8 @@ hal::Result<void> TerminalSink::open(hal::FrameFormat format) {
   }
   format_ = format;
   lay_out();
-  const auto cells = static_cast<std::size_t>(shown_cols()) * static_cast<std::size_t>(shown_rows() / 2 + 1);
-  const auto lines = static_cast<std::size_t>(shown_rows() / 2 + 2);
-  buffer_.assign(cells * longest_cell + lines * 16 + 256, '\0');
+  const auto rows = static_cast<std::size_t>(shown_rows()), cols = static_cast<std::size_t>(shown_cols());
+  buffer_.assign(cols * (rows / 2 + 1) * longest_cell + (rows / 2 + 2) * 16 + 256, '\0');
   used_ = 0;
   shown_ = 0;
   anything_drawn_ = false;

@@ -34,6 +34,8 @@ class TerminalSink final : public hal::FrameSink {
  public:
   /// `clock` must outlive the sink.
   TerminalSink(const hal::Clock& clock, TerminalOptions options) : clock_(&clock), options_(options) {}
+  TerminalSink(const TerminalSink&) = delete;
+  TerminalSink& operator=(const TerminalSink&) = delete;
   ~TerminalSink() override;
 
   /// Hides the cursor. Errors: usage (no pixels, already open), io.

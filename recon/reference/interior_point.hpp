@@ -22,7 +22,7 @@ struct QuadraticSolution {
 
 /// Mehrotra's predictor-corrector (Nocedal & Wright, "Numerical Optimization", 2nd ed., algorithm 16.4), until the gap
 /// and both residuals are below `tolerance` of the problem's scale. Slow and accurate: a judge, not a product.
-[[nodiscard]] QuadraticSolution solve_interior_point(const QuadraticProgram& program, double tolerance = 1e-11,
+[[nodiscard]] QuadraticSolution solve_interior_point(const QuadraticProgram& qp, double tolerance = 1e-11,
                                                      int max_iterations = 200);
 
 }  // namespace compueye::recon::reference

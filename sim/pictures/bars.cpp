@@ -33,7 +33,8 @@ hal::Image bars(int rows, int cols, std::uint64_t seed) {
   hal::Image picture(rows, cols);
   for (int row = top; row < std::min(rows, top + 4 * cell); ++row) {
     for (int col = left; col < std::min(cols, left + 4 * cell); ++col) {
-      const Field& field = fields[static_cast<std::size_t>((row - top) / cell * 4 + (col - left) / cell)];
+      const int at = (row - top) / cell * 4 + (col - left) / cell;
+      const Field& field = fields[static_cast<std::size_t>(at)];
       const int v = (row - top) % cell - margin, u = (col - left) % cell - margin;
       if (u < 0 || v < 0 || u >= usable || v >= usable) continue;
       const int width = std::max((field.width * side + 80) / 160, 1);

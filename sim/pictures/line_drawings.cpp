@@ -33,15 +33,7 @@ void wave(Strokes& s, double x, double y, double length, int crests) {
   }
 }
 
-}  // namespace
-
-Strokes draw_butterfly() {
-  Strokes s;
-  s.ellipse({0.5, 0.56}, 0.035, 0.24);
-  s.ellipse({0.5, 0.28}, 0.045, 0.045);
-  for (const double y : {0.46, 0.55, 0.64, 0.72}) s.line({0.466, y}, {0.534, y});
-  // Antennae with curled ends.
-  s.curves_mirrored({{0.52, 0.24}, {0.54, 0.14}, {0.58, 0.08}, {0.65, 0.06}, {0.7, 0.05}, {0.7, 0.11}, {0.66, 0.1}});
+void butterfly_wings(Strokes& s) {
   // Upper wing, its inner margin, eye spots and veins.
   s.curves_mirrored({{0.535, 0.45},
                      {0.6, 0.2},
@@ -90,6 +82,18 @@ Strokes draw_butterfly() {
                      {0.63, 0.8},
                      {0.59, 0.72},
                      {0.57, 0.63}});
+}
+
+}  // namespace
+
+Strokes draw_butterfly() {
+  Strokes s;
+  s.ellipse({0.5, 0.56}, 0.035, 0.24);
+  s.ellipse({0.5, 0.28}, 0.045, 0.045);
+  for (const double y : {0.46, 0.55, 0.64, 0.72}) s.line({0.466, y}, {0.534, y});
+  // Antennae with curled ends.
+  s.curves_mirrored({{0.52, 0.24}, {0.54, 0.14}, {0.58, 0.08}, {0.65, 0.06}, {0.7, 0.05}, {0.7, 0.11}, {0.66, 0.1}});
+  butterfly_wings(s);
   for (const double side : {-1.0, 1.0}) {
     const auto at = [&](double dx, double y) { return Point{0.5 + side * dx, y}; };
     s.ellipse(at(0.29, 0.32), 0.055, 0.055);
