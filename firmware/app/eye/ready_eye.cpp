@@ -94,12 +94,14 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const EyeRequest& reque
   const recon::Objective objective = objective_of(board, lambda->value);
   const recon::Plan plan = plan_of(board, request, std::count(eye.sees_.begin(), eye.sees_.end(), 1));
   const auto order = static_cast<int>(a.seeing_rows().size());
-  KeptFactor factor(request.cache, {hash, recon::resolve_rho(a, objective, plan), order});
+  const bool cached = recon::uses_factor(plan.solver);
+  KeptFactor factor(cached ? request.cache : std::filesystem::path{},
+                    {hash, recon::resolve_rho(a, objective, plan), order, recon::metric_of(objective.basis)});
   auto made =
       recon::Reconstructor::create(a, board.object.rows, board.object.cols, objective, plan, factor.take(), progress);
   if (!made) return tl::unexpected(std::move(made.error()));
   eye.reconstructor_ = std::make_unique<recon::Reconstructor>(std::move(*made));
-  if (factor.origin() != FactorOrigin::kept) factor.keep(eye.reconstructor_->factor());
+  if (cached && factor.origin() != FactorOrigin::kept) factor.keep(eye.reconstructor_->factor());
   eye.factor_origin_ = factor.origin();
   eye.notes_ = factor.notes();
   return eye;
@@ -109,8 +111,9 @@ hal::Result<void> ReadyEye::set_iterations(int iterations) {
   recon::Plan plan = reconstructor_->plan();
   if (plan.iterations == iterations) return {};
   plan.iterations = iterations;
-  auto made = recon::Reconstructor::create(*response_, reconstructor_->image_rows(), reconstructor_->image_cols(),
-                                           reconstructor_->objective(), plan, reconstructor_->factor());
+  auto made = recon::Reconstructor::create(
+      *response_, reconstructor_->image_rows(), reconstructor_->image_cols(), reconstructor_->objective(), plan,
+      recon::uses_factor(plan.solver) ? std::optional(reconstructor_->factor()) : std::nullopt);
   if (!made) return tl::unexpected(std::move(made.error()));
   *reconstructor_ = std::move(*made);
   return {};
