@@ -82,8 +82,8 @@ struct Sweep {
 };
 
 std::vector<double> factors() {
-  std::vector<double> all;
-  for (double c = 0.05; c < 7.0; c *= std::sqrt(2.0)) all.push_back(c);
+  std::vector<double> all{0.05};
+  while (all.back() * std::sqrt(2.0) < 7.0) all.push_back(all.back() * std::sqrt(2.0));
   return all;
 }
 
@@ -124,7 +124,7 @@ class Eye {
     const std::size_t bytes = solver.required_bytes();
     auto* memory = static_cast<std::byte*>(::operator new (bytes, std::align_val_t{64}));
     hal::Image picture(truth.rows, truth.cols);
-    (void)solver.solve(y, {}, {memory, bytes}, picture.pixels);
+    static_cast<void>(solver.solve(y, {}, {memory, bytes}, picture.pixels));
     ::operator delete (memory, std::align_val_t{64});
     return recon::nmse(truth, picture).value();
   }
@@ -164,6 +164,7 @@ void print_tuning(const Setup& setup, const std::vector<Sweep>& sweeps) {
   const std::vector<double> cs = factors();
   for (std::size_t c = 0; c < cs.size(); ++c) {
     std::vector<double> ratios;
+    ratios.reserve(sweeps.size());
     for (const Sweep& sweep : sweeps) ratios.push_back(excess(sweep, c));
     fmt::print(" {:.2f}:{:.3f}", cs[c], median(ratios));
   }

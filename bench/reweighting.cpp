@@ -83,27 +83,36 @@ double relative_difference(const std::vector<float>& a, const std::vector<float>
   return std::sqrt(difference / size);
 }
 
-hal::Result<Figures> measure(const recon::Response& response, const recon::Reconstructor& solver,
-                             const std::vector<std::vector<float>>& samples, double share) {
-  Figures figures;
-  figures.share = share;
-  figures.missing = static_cast<int>(share * solver.seeing_channels());
-  const std::vector<float> weights = with_missing(response, figures.missing);
+/// Times all shares by turns, so that whatever else the machine does meets them alike.
+hal::Result<void> time_frames(const recon::Response& response, const recon::Reconstructor& solver,
+                              const std::vector<std::vector<float>>& samples, std::vector<Figures>& all) {
   const bench::Workspace workspace(solver.required_bytes());
   std::vector<float> x(static_cast<std::size_t>(solver.pixels()));
-  recon::FrameInfo info = solver.solve(samples.front(), weights, workspace.span(), x);  // warms the caches
-  std::vector<double> times;
+  static_cast<void>(solver.solve(samples.front(), {}, workspace.span(), x));  // warms the caches
+  std::vector<std::vector<double>> times(all.size());
   for (const std::vector<float>& y : samples) {
-    times.push_back(bench::milliseconds([&] { info = solver.solve(y, weights, workspace.span(), x); }));
-    if (info.health == recon::Health::invalid || info.channels_reweighted != figures.missing) {
-      return hal::fail(hal::ErrorCode::mismatch, "bench", "a frame was not solved as planned");
+    for (std::size_t s = 0; s < all.size(); ++s) {
+      const std::vector<float> weights = with_missing(response, all[s].missing);
+      recon::FrameInfo info;
+      times[s].push_back(bench::milliseconds([&] { info = solver.solve(y, weights, workspace.span(), x); }));
+      if (info.health == recon::Health::invalid || info.channels_reweighted != all[s].missing) {
+        return hal::fail(hal::ErrorCode::mismatch, "bench", "a frame was not solved as planned");
+      }
     }
   }
-  figures.median_ms = bench::median(std::move(times));
-  const auto reference = refactored(response, solver, samples.back(), weights);
+  for (std::size_t s = 0; s < all.size(); ++s) all[s].median_ms = bench::median(times[s]);
+  return {};
+}
+
+hal::Result<double> error_of_picture(const recon::Response& response, const recon::Reconstructor& solver,
+                                     const std::vector<float>& y, int missing) {
+  const std::vector<float> weights = with_missing(response, missing);
+  const bench::Workspace workspace(solver.required_bytes());
+  std::vector<float> x(static_cast<std::size_t>(solver.pixels()));
+  static_cast<void>(solver.solve(y, weights, workspace.span(), x));
+  const auto reference = refactored(response, solver, y, weights);
   if (!reference) return tl::unexpected(reference.error());
-  figures.relative_error = relative_difference(x, *reference);
-  return figures;
+  return relative_difference(x, *reference);
 }
 
 hal::Result<std::vector<Figures>> measure_all() {
@@ -126,9 +135,13 @@ hal::Result<std::vector<Figures>> measure_all() {
   const auto samples = noisy_samples(*response, *scene);
   std::vector<Figures> all;
   for (const double share : {0.0, 0.01, 0.05}) {
-    auto figures = measure(*response, *solver, samples, share);
-    if (!figures) return tl::unexpected(figures.error());
-    all.push_back(*figures);
+    all.push_back({share, static_cast<int>(share * solver->seeing_channels()), 0.0, 0.0});
+  }
+  if (auto timed = time_frames(*response, *solver, samples, all); !timed) return tl::unexpected(timed.error());
+  for (Figures& figures : all) {
+    const auto error = error_of_picture(*response, *solver, samples.back(), figures.missing);
+    if (!error) return tl::unexpected(error.error());
+    figures.relative_error = *error;
   }
   return all;
 }

@@ -33,6 +33,7 @@ double median_ms(Work&& work, int repeats = 15, double total_ms = 500.0) {
   const int batch = std::max(1, static_cast<int>(0.5 / once));
   const int count = std::max(repeats, static_cast<int>(total_ms / (once * batch)));
   std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     times.push_back(milliseconds([&] {
                       for (int k = 0; k < batch; ++k) work();
