@@ -3,23 +3,12 @@
 #include <string>
 
 #include "firmware/app/command.hpp"
+#include "firmware/app/options/usage_error.hpp"
 #include "firmware/app/report/error_report.hpp"
 
 namespace {
 
 using namespace compueye;
-
-/// CLI11 reports in several lines; people get one sentence.
-int usage_error(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-  std::string command = "compueye";
-  for (const CLI::App* sub : app.get_subcommands()) command += " " + sub->get_name();
-  std::string sentence = error.what();
-  for (char& c : sentence) {
-    if (c == '\n') c = ' ';
-  }
-  return firmware::print_error({hal::ErrorCode::usage, {}, sentence + "; see " + command + " --help"});
-}
 
 int run(int argc, char** argv) {
   CLI::App app{"The runtime of a computational compound eye: from photodiodes to pictures in real time."};
@@ -36,7 +25,8 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return usage_error(app, error);
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return firmware::print_error(firmware::usage_error(app, error));
   }
   if (const auto done = chosen(); !done) return firmware::print_error(done.error());
   return 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,15 +48,20 @@ std::string gibibytes(std::uint64_t bytes) {
   return std::to_string(hundredths / 100) + "." + (fraction.size() < 2 ? "0" : "") + fraction + " GiB";
 }
 
+Result<void> check_dense_size(const std::filesystem::path& path, std::span<const std::int64_t, 2> shape,
+                              std::uint64_t max_bytes) {
+  const std::uint64_t bytes =
+      static_cast<std::uint64_t>(shape[0]) * static_cast<std::uint64_t>(shape[1]) * sizeof(float);
+  if (bytes <= max_bytes) return {};
+  return hal::fail(ErrorCode::no_space, path.string(),
+                   "would take " + gibibytes(bytes) + " as a dense " + shape_text(shape) + " array, expected at most " +
+                       gibibytes(max_bytes) + "; write a sparse .mtx file instead");
+}
+
 Result<void> write_dense(const std::filesystem::path& path, const Response& response, std::uint64_t max_bytes) {
   const std::int64_t shape[] = {response.rows(), response.cols()};
   const auto width = static_cast<std::size_t>(response.cols());
-  const std::uint64_t bytes = static_cast<std::uint64_t>(response.rows()) * width * sizeof(float);
-  if (bytes > max_bytes) {
-    return hal::fail(ErrorCode::no_space, path.string(),
-                     "would take " + gibibytes(bytes) + " as a dense " + shape_text(shape) +
-                         " array, expected at most " + gibibytes(max_bytes) + "; write a sparse .mtx file instead");
-  }
+  if (auto ok = check_dense_size(path, shape, max_bytes); !ok) return ok;
   auto file = AtomicFile::create(path);
   if (!file) return tl::unexpected(std::move(file.error()));
   Result<void> ok = file->write(format_npy_header(NpyType::f4, shape));
@@ -88,6 +94,13 @@ Result<void> write_response(const std::filesystem::path& path, const Response& r
   const auto kind = kind_of(path);
   if (!kind) return tl::unexpected(kind.error());
   return *kind == Kind::npy ? write_dense(path, response, max_bytes) : write_matrix_market(path, response);
+}
+
+Result<void> check_response_target(const std::filesystem::path& path, int rows, int cols, std::uint64_t max_bytes) {
+  const auto kind = kind_of(path);
+  if (!kind) return tl::unexpected(kind.error());
+  const std::int64_t shape[] = {rows, cols};
+  return *kind == Kind::npy ? check_dense_size(path, shape, max_bytes) : Result<void>();
 }
 
 }  // namespace compueye::firmware

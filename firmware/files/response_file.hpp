@@ -20,4 +20,9 @@ inline constexpr std::uint64_t default_max_dense_bytes = std::uint64_t{1} << 30U
 [[nodiscard]] hal::Result<void> write_response(const std::filesystem::path& path, const recon::Response& response,
                                                std::uint64_t max_bytes = default_max_dense_bytes);
 
+/// Whether write_response() would take a response of this size under this name, asked before it is computed. Errors:
+/// usage (other extension), no_space (dense and larger than `max_bytes`).
+[[nodiscard]] hal::Result<void> check_response_target(const std::filesystem::path& path, int rows, int cols,
+                                                      std::uint64_t max_bytes = default_max_dense_bytes);
+
 }  // namespace compueye::firmware

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// The command line of `compueye inspect`.
+struct InspectOptions {
+  std::string what;         ///< a .npy or .mtx file, a board's folder or its board.toml
+  std::string as = "auto";  ///< auto, array or response; for .npy
+  std::string size;         ///< "HxW" of the picture behind a response; empty: unknown
+  bool json = false;
+};
+
+/// `compueye inspect`: the key figures of a file or a board on stdout.
+[[nodiscard]] hal::Result<void> inspect(const InspectOptions& options);
+
+}  // namespace compueye::firmware

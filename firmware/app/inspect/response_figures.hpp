@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+
+#include "firmware/app/inspect/figure_list.hpp"
+#include "firmware/app/options/value_text.hpp"
+#include "hal/result.hpp"
+#include "recon/factor.hpp"
+#include "recon/response.hpp"
+
+namespace compueye::firmware {
+
+/// What a calibrator wants to know of a matrix before using it. With the picture's `size` also what depends on its rows
+/// and columns: mirror symmetry, the DCT's atoms, and the exact memory of admm. Errors: mismatch (size), interrupted.
+[[nodiscard]] hal::Result<void> add_response_figures(const recon::Response& response, std::optional<PictureSize> size,
+                                                     const recon::Progress& progress, FigureList& figures);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,63 @@
+#include "firmware/app/reconstruct/frame_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <span>
+
+#include "recon/core/workspace.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+struct alignas(recon::core::Workspace::alignment) Line {
+  std::byte bytes[recon::core::Workspace::alignment];
+};
+
+std::vector<Line> workspace_of(const recon::Reconstructor& reconstructor) {
+  return std::vector<Line>((reconstructor.required_bytes() + sizeof(Line) - 1) / sizeof(Line));
+}
+
+hal::Result<void> check_health(const recon::FrameInfo& info, std::int64_t frame) {
+  if (info.health != recon::Health::invalid) return {};
+  return hal::fail(hal::ErrorCode::out_of_range, fmt::format("frame {}", frame),
+                   "could not be reconstructed, its numbers left the range of the solver, expected samples in white "
+                   "pixels; check the units of the response and the samples, or try --precision f64");
+}
+
+}  // namespace
+
+hal::Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& reconstructor,
+                                                         const FrameInputs& inputs, const Truth* truth,
+                                                         PictureOutputs& outputs, const hal::Clock& clock,
+                                                         const recon::Progress& progress, const InterruptWatch& watch) {
+  std::vector<Line> workspace = workspace_of(reconstructor);
+  std::vector<float> picture(static_cast<std::size_t>(reconstructor.pixels()));
+  std::vector<FrameRecord> records;
+  records.reserve(static_cast<std::size_t>(inputs.frames));
+  const auto tell = [&](std::int64_t done) {
+    if (progress) progress("reconstructing", static_cast<double>(done), static_cast<double>(inputs.frames));
+  };
+  for (std::int64_t f = 0; f < inputs.frames; ++f) {
+    tell(f);
+    FrameRecord record;
+    const std::int64_t began_ns = clock.now_ns();
+    record.info = reconstructor.solve(inputs.samples_of(f), inputs.weights_of(f),
+                                      std::as_writable_bytes(std::span(workspace)), picture);
+    record.solve_ms = static_cast<double>(clock.now_ns() - began_ns) * 1e-6;
+    const auto written = watch.check().and_then([&] { return check_health(record.info, f); }).and_then([&] {
+      return outputs.add(picture);
+    });
+    if (!written) return tl::unexpected(written.error());
+    if (truth != nullptr) {
+      const auto quality = truth->compare(f, picture);
+      if (!quality) return tl::unexpected(quality.error());
+      record.quality = *quality;
+    }
+    records.push_back(record);
+  }
+  tell(inputs.frames);
+  return records;
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,193 @@
+#include "firmware/app/reconstruct/reconstruct_options.hpp"
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "firmware/app/board/reconstruction_names.hpp"
+#include "firmware/app/options/option_checks.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+template <class Kind>
+std::vector<std::string_view> names_in(std::span<const Named<Kind>> named) {
+  std::vector<std::string_view> names;
+  for (const Named<Kind>& each : named) names.push_back(each.name);
+  return names;
+}
+
+template <class Kind>
+Kind kind_named(std::span<const Named<Kind>> named, std::string_view name) {
+  for (const Named<Kind>& each : named) {
+    if (each.name == name) return each.kind;
+  }
+  return named.front().kind;  // the option's check has let only these names through
+}
+
+void add_files(CLI::App& command, ReconstructOptions& o) {
+  command.add_option("--response", o.response, "measurement matrix A (M, N): .npy dense or .mtx sparse")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--samples", o.samples, "y: .npy of (M,) or (frames, M), in white pixels")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--size", o.size, "rows and columns of the picture, H times W = N")
+      ->required()
+      ->type_name("HxW")
+      ->check(text_where([](const std::string& text) {
+        return picture_size_from(text) ? std::string() : "is '" + text + "', expected rows and columns such as 16x16";
+      }));
+  command.add_option("--weights", o.weights, "weights >= 0: .npy of (M,) or (frames, M); 0 = channel missing")
+      ->type_name("FILE");
+  command.add_option("--truth", o.truth, "true picture(s): .npy of (H, W) or (frames, H, W), for NMSE, PSNR, SSIM")
+      ->type_name("FILE");
+  command.add_option("--out", o.out, "x: .npy of (H, W), or (frames, H, W) when the samples have a frames axis")
+      ->type_name("FILE");
+  command
+      .add_option("--png", o.png,
+                  "8-bit picture, 0..1 from black to white; several frames become a numbered series: x.png gives "
+                  "x-0000.png, x-0001.png ...")
+      ->type_name("FILE");
+}
+
+void add_problem(CLI::App& command, ReconstructOptions& o) {
+  command.add_option("--solver", o.solver, "admm (default) or tikhonov")
+      ->type_name("NAME")
+      ->check(one_of(names_in(solver_names()), {"pdhg", "adm", "fista", "cp", "tsvd", "omp"}));
+  command.add_option("--basis", o.basis, "where the picture is sparse: identity (default) or dct")
+      ->type_name("NAME")
+      ->check(one_of(names_in(basis_names()), {"haar", "db4", "tv"}));
+  auto* nonnegative = command.add_flag("--nonnegative", o.nonnegative, "constraint x >= 0");
+  command.add_option("--box", o.box, "constraint LO <= x <= HI, such as 0,1")
+      ->type_name("LO,HI")
+      ->excludes(nonnegative)
+      ->check(text_where([](const std::string& text) {
+        return interval_from(text) ? std::string()
+                                   : "is '" + text + "', expected two finite numbers with the lower first, such as 0,1";
+      }));
+  const auto not_negative = [](double v) { return v >= 0.0; };
+  auto* lambda = command.add_option("--lambda", o.lambda, "weight of the penalty, by hand")
+                     ->type_name("V")
+                     ->check(number_where(not_negative, "a finite number of 0 or more"));
+  command.add_option("--sigma", o.sigma, "noise of a sample (of weight 1) in white pixels: lambda by rule")
+      ->type_name("V")
+      ->excludes(lambda)
+      ->check(number_where(not_negative, "a finite number of 0 or more"));
+}
+
+void add_plan(CLI::App& command, ReconstructOptions& o) {
+  command.add_option("--iterations", o.iterations, "exactly this many a frame (default 100)")
+      ->type_name("K")
+      ->check(whole_number(1, 1'000'000));
+  command.add_option("--rho", o.rho, "ADMM penalty (default: by rule)")
+      ->type_name("V")
+      ->check(number_where([](double v) { return v > 0.0; }, "a finite number above 0"));
+  command.add_option("--relaxation", o.relaxation, "of ADMM (default 1.7)")
+      ->type_name("V")
+      ->check(number_where([](double v) { return v > 0.0 && v < 2.0; }, "a number above 0 and below 2"));
+  command.add_option("--precision", o.precision, "f32 (default) or f64")
+      ->type_name("NAME")
+      ->check(one_of({"f32", "f64"}, {}));
+  command.add_flag("--json", o.json, "print one object with every figure");
+}
+
+hal::Result<void> usage(const char* option, std::string sentence) {
+  return hal::fail(hal::ErrorCode::usage, option, std::move(sentence));
+}
+
+hal::Result<void> check_penalty(const ReconstructOptions& o) {
+  if (o.lambda || o.sigma) return {};
+  return usage("--lambda or --sigma",
+               "is needed: --sigma takes the noise of one sample in white pixels and finds lambda by rule, --lambda "
+               "sets the weight of the penalty by hand");
+}
+
+hal::Result<void> check_tikhonov(const ReconstructOptions& o) {
+  if (o.solver != "tikhonov") return {};
+  if (o.basis != "identity" || o.nonnegative || !o.box.empty()) {
+    return usage("--solver tikhonov",
+                 "takes --basis identity without --nonnegative and --box only; admm takes every basis with every "
+                 "constraint");
+  }
+  if (o.iterations || o.rho || o.relaxation) {
+    return usage("--solver tikhonov", "solves directly, so --iterations, --rho and --relaxation go with admm only");
+  }
+  if (o.lambda && !(*o.lambda > 0.0)) {
+    return usage("--lambda", "is 0, expected a number above 0 with tikhonov, where it is the weight of ||x||^2");
+  }
+  return {};
+}
+
+/// A file name that ends like something else is most likely two options mixed up. No ending is a device or pipe.
+hal::Result<void> check_ending(const char* option, const std::string& file, std::string_view ending, bool or_none) {
+  const std::string found = std::filesystem::path(file).extension().string();
+  if (file.empty() || found == ending || (or_none && found.empty())) return {};
+  return usage(option, "is '" + file + "', expected a file name that ends in " + std::string(ending));
+}
+
+hal::Result<void> check_not_input(const char* option, const std::string& file, const ReconstructOptions& o) {
+  std::error_code ignored;
+  for (const std::string& input : {o.response, o.samples, o.weights, o.truth}) {
+    if (!file.empty() && std::filesystem::equivalent(file, input, ignored)) {
+      return usage(option, "is '" + file + "', which is read as well, expected another file");
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_reconstruct_options(CLI::App& command, ReconstructOptions& options) {
+  add_files(command, options);
+  add_problem(command, options);
+  add_plan(command, options);
+}
+
+std::string reconstruct_footer() {
+  return "Solves min 1/2 ||W^(1/2)(Ax-y)||^2 + lambda ||Psi x||_1 within the constraint, tikhonov with\n"
+         "lambda/2 ||x||^2 instead. One unit of y is one fully seen pixel at white; x is in 0..1 of display white.\n\n"
+         "What goes with what:\n"
+         "  solver     basis             constraint                      iterations, rho, relaxation\n"
+         "  admm       identity or dct   none, --nonnegative or --box    yes\n"
+         "  tikhonov   identity          none                            no: it is direct\n"
+         "Either --lambda or --sigma, always. Weights are inverse variances relative to --sigma; with (frames, M) "
+         "they\n"
+         "change from frame to frame. A NaN in y is an error unless its weight is 0.\n"
+         "Ctrl-C leaves no files behind. Exit codes: 0 done, 1 failed, 2 wrong usage.\n\n"
+         "Examples:\n"
+         "  compueye response --board boards/sim-8x8 --out A.mtx\n"
+         "  compueye reconstruct --response A.mtx --samples y.npy --size 16x16 --box 0,1 --sigma 0.002 --png x.png\n"
+         "  compueye reconstruct --response A.npy --samples y.npy --size 160x160 --basis dct --box 0,1 --sigma 0.32 "
+         "\\\n"
+         "                       --weights w.npy --out x.npy --truth truth.npy --json";
+}
+
+hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
+  const auto checked = check_penalty(o)
+                           .and_then([&] { return check_tikhonov(o); })
+                           .and_then([&] { return check_ending("--out", o.out, ".npy", true); })
+                           .and_then([&] { return check_ending("--png", o.png, ".png", false); })
+                           .and_then([&] { return check_not_input("--out", o.out, o); });
+  if (!checked) return tl::unexpected(checked.error());
+  ProblemStatement problem;
+  problem.size = *picture_size_from(o.size);
+  problem.objective.basis = kind_named(basis_names(), o.basis);
+  if (o.nonnegative) problem.objective.constraint = recon::ConstraintKind::nonnegative;
+  if (const auto box = interval_from(o.box)) {
+    problem.objective.constraint = recon::ConstraintKind::box;
+    problem.objective.lo = box->lo;
+    problem.objective.hi = box->hi;
+  }
+  problem.plan.solver = kind_named(solver_names(), o.solver);
+  problem.plan.precision = o.precision == "f64" ? recon::Precision::f64 : recon::Precision::f32;
+  problem.plan.iterations = o.iterations.value_or(problem.plan.iterations);
+  problem.plan.rho = o.rho.value_or(problem.plan.rho);
+  problem.plan.relaxation = o.relaxation.value_or(problem.plan.relaxation);
+  return problem;
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,194 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "firmware/files/npy.hpp"
+#include "firmware/files/png.hpp"
+#include "sim/built_in_scenes.hpp"
+#include "tests/firmware/cli/program.hpp"
+#include "tests/firmware/cli/scratch_problem.hpp"
+
+using namespace compueye;
+using namespace compueye::test;
+
+namespace {
+
+constexpr std::string_view small_eye = "reconstruct --response A.mtx --samples y.npy --size 16x16 ";
+
+/// `frames` scaled copies of the Fig. 2 pattern seen by the small eye, as y.npy and truth.npy.
+void put_frames(const TemporaryFolder& folder, int frames) {
+  const recon::Response a = make_small_eye(folder);
+  const auto scene = sim::render_built_in("fig2", 16, 16, 0);
+  REQUIRE(scene.has_value());
+  std::vector<double> samples, truths;
+  for (int f = 0; f < frames; ++f) {
+    std::vector<double> x(scene->pixels.begin(), scene->pixels.end()), y(static_cast<std::size_t>(a.rows()));
+    for (double& each : x) each *= 1.0 - 0.2 * f;
+    a.forward(x, y);
+    samples.insert(samples.end(), y.begin(), y.end());
+    truths.insert(truths.end(), x.begin(), x.end());
+  }
+  put_npy(folder, "y.npy", {frames, a.rows()}, samples);
+  put_npy(folder, "truth.npy", {frames, 16, 16}, truths);
+}
+
+std::vector<double> pictures_in(const std::filesystem::path& path) {
+  auto pictures = firmware::read_pictures(path);
+  REQUIRE(pictures.has_value());
+  return pictures->values;
+}
+
+double relative_distance(std::span<const double> a, std::span<const double> b) {
+  REQUIRE(a.size() == b.size());
+  double difference = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference += (a[i] - b[i]) * (a[i] - b[i]);
+    size += b[i] * b[i];
+  }
+  REQUIRE(size > 0.0);
+  return std::sqrt(difference / size);
+}
+
+}  // namespace
+
+TEST_CASE("reconstructing twice gives identical bytes") {
+  const TemporaryFolder folder;
+  put_frames(folder, 2);
+  for (const char* how :
+       {"--basis identity --box 0,1", "--basis dct --nonnegative", "--precision f64", "--solver tikhonov"}) {
+    CAPTURE(how);
+    const std::string command = std::string(small_eye) + "--sigma 0.002 " + how;
+    CHECK(run_compueye(command + " --out first.npy --png first.png", folder.path()).exit_code == 0);
+    CHECK(run_compueye(command + " --out second.npy --png second.png", folder.path()).exit_code == 0);
+    CHECK(bytes_of(folder / "first.npy") == bytes_of(folder / "second.npy"));
+    CHECK(bytes_of(folder / "first-0001.png") == bytes_of(folder / "second-0001.png"));
+    CHECK(pictures_in(folder / "first.npy").size() == 512);
+  }
+}
+
+TEST_CASE("frames with weights of their own equal single runs with these weights") {
+  const TemporaryFolder folder;
+  put_frames(folder, 3);
+  const auto samples = firmware::read_samples(folder / "y.npy");
+  REQUIRE(samples.has_value());
+  std::vector<double> weights(3 * 64, 1.0);
+  for (std::size_t m = 0; m < 64; ++m) weights[64 + m] = m % 9 == 0 ? 0.0 : 1.0;
+  for (std::size_t m = 0; m < 64; ++m) weights[128 + m] = 0.25 + 0.05 * static_cast<double>(m);
+  put_npy(folder, "w.npy", {3, 64}, weights);
+  const std::string how = "--weights w.npy --lambda 0.05 --box 0,1 --iterations 3000 ";
+  const auto all = json_from(std::string(small_eye) + how + "--out all.npy --json", folder.path());
+  CHECK(all["per_frame"][1]["channels_used"] == 56);
+  const std::vector<double> together = pictures_in(folder / "all.npy");
+  for (std::size_t f = 0; f < 3; ++f) {
+    CAPTURE(f);
+    const auto own = std::span(weights).subspan(64 * f, 64);
+    put_npy(folder, "w.npy", {64}, {own.begin(), own.end()});
+    const auto frame = samples->frame(static_cast<std::int64_t>(f));
+    put_npy(folder, "y.npy", {64}, {frame.begin(), frame.end()});
+    const auto one = json_from(std::string(small_eye) + how + "--out one.npy --json", folder.path());
+    CHECK(one["per_frame"][0]["objective"].get<double>() ==
+          doctest::Approx(all["per_frame"][f]["objective"].get<double>()).epsilon(1e-3));
+    CHECK(relative_distance(std::span(together).subspan(256 * f, 256), pictures_in(folder / "one.npy")) < 1e-3);
+  }
+}
+
+TEST_CASE("the report has every figure") {
+  const TemporaryFolder folder;
+  put_frames(folder, 2);
+  const auto json =
+      json_from(std::string(small_eye) + "--truth truth.npy --sigma 0.002 --box 0,1 --iterations 50 --out x.npy --json",
+                folder.path());
+  for (const char* key : {"response",
+                          "samples",
+                          "weights",
+                          "operating_point",
+                          "objective",
+                          "rho",
+                          "relaxation",
+                          "max_reweighted",
+                          "rows",
+                          "cols",
+                          "channels",
+                          "seeing_channels",
+                          "frames",
+                          "setup_s",
+                          "median_frame_ms",
+                          "table_bytes",
+                          "workspace_bytes",
+                          "median_objective",
+                          "median_residual",
+                          "health",
+                          "quality",
+                          "written",
+                          "per_frame"}) {
+    CAPTURE(key);
+    CHECK(json.contains(key));
+  }
+  CHECK(json["objective"]["lambda_by"] == "rule");
+  CHECK(json["objective"]["lambda"].get<double>() > 0.0);
+  CHECK(json["objective"]["constraint"] == "box");
+  CHECK(json["operating_point"]["iterations"] == 50);
+  CHECK(json["frames"] == 2);
+  CHECK(json["per_frame"].size() == 2);
+  CHECK(json["rho"].get<double>() > 0.0);
+  CHECK(json["health"]["invalid"] == 0);
+  CHECK(json["quality"]["nmse"].get<double>() == doctest::Approx(0.5 * (json["per_frame"][0]["nmse"].get<double>() +
+                                                                        json["per_frame"][1]["nmse"].get<double>())));
+  CHECK(json["quality"]["ssim"].get<double>() < 1.0);
+
+  const Outcome text =
+      run_compueye(std::string(small_eye) + "--truth truth.npy --lambda 0.01 --nonnegative", folder.path());
+  CHECK(text.exit_code == 0);
+  for (const char* part : {"admm, identity basis", "by hand", "rho", "64 seeing channels of 64", "median", "objective",
+                           "residual", "health", "NMSE", "PSNR", "SSIM"}) {
+    CAPTURE(part);
+    CHECK(text.out.find(part) != std::string::npos);
+  }
+}
+
+TEST_CASE("pictures are written in the shape of the samples, in 8 bits as PNG") {
+  const TemporaryFolder folder;
+  put_frames(folder, 1);
+  const std::string command = std::string(small_eye) + "--sigma 0.002 --box 0,1 --out x.npy --png x.png";
+  CHECK(run_compueye(command, folder.path()).exit_code == 0);
+  const auto framed = firmware::read_npy(folder / "x.npy", 1, 3);
+  REQUIRE(framed.has_value());
+  CHECK(framed->shape == std::vector<std::int64_t>{1, 16, 16});
+  const auto png = firmware::read_png(folder / "x.png");
+  REQUIRE(png.has_value());
+  CHECK(png->rows == 16);
+  for (std::size_t i = 0; i < png->pixels.size(); ++i)
+    CHECK(std::abs(png->pixels[i] - framed->values[i]) <= 0.5001 / 255);
+
+  const auto y = firmware::read_samples(folder / "y.npy");
+  put_npy(folder, "y.npy", {64}, y->values);
+  CHECK(run_compueye(command, folder.path()).exit_code == 0);
+  const auto flat = firmware::read_npy(folder / "x.npy", 1, 3);
+  REQUIRE(flat.has_value());
+  CHECK(flat->shape == std::vector<std::int64_t>{16, 16});
+  CHECK(flat->values == framed->values);
+}
+
+TEST_CASE("one truth serves every frame") {
+  const TemporaryFolder folder;
+  put_frames(folder, 2);
+  const auto truths = pictures_in(folder / "truth.npy");
+  put_npy(folder, "truth.npy", {16, 16}, {truths.begin(), truths.begin() + 256});
+  const auto json = json_from(
+      std::string(small_eye) + "--truth truth.npy --lambda 1e-3 --box 0,1 --iterations 2000 --json", folder.path());
+  // The second frame is .8 of the first.
+  CHECK(json["per_frame"][0]["nmse"].get<double>() < 0.01);
+  CHECK(json["per_frame"][1]["nmse"].get<double>() == doctest::Approx(0.04).epsilon(0.1));
+}
+
+TEST_CASE("reconstruct --help states what goes with what and an example") {
+  const TemporaryFolder folder;
+  const Outcome help = run_compueye("reconstruct --help", folder.path());
+  CHECK(help.exit_code == 0);
+  CHECK(help.err.empty());
+  for (const char* part :
+       {"admm       identity or dct", "tikhonov   identity", "numbered", "compueye reconstruct --response"}) {
+    CAPTURE(part);
+    CHECK(help.out.find(part) != std::string::npos);
+  }
+}
