@@ -65,7 +65,8 @@ void add_ranges(const Response& a, FigureList& figures) {
 }
 
 void add_symmetry(const Response& a, PictureSize size, FigureList& figures) {
-  const std::size_t order = recon::find_mirror_symmetry(a, size.rows, size.cols).order();
+  // As the solver's set-up does: blind rows have no place in the picture and so no mirror image.
+  const std::size_t order = recon::find_mirror_symmetry(a.select_rows(a.seeing_rows()), size.rows, size.cols).order();
   figures.add("mirror_symmetry", "mirror symmetry",
               order == 4   ? "left-right and up-down (set-up is 16 times faster)"
               : order == 2 ? "one axis (set-up is 4 times faster)"
@@ -115,14 +116,14 @@ Result<void> add_response_figures(const Response& a, std::optional<PictureSize> 
   add_support(summary, count_duplicate_rows(a), figures);
   if (a.stored_entries() > 0) add_ranges(a, figures);
   const SingularValue largest = largest_singular_value(a, progress);
-  if (progress && !progress("atom norms", 0.0, 1.0)) {
+  if (progress && !progress("atom norms", 0.0, 0.0)) {
     return fail(ErrorCode::interrupted, "inspect", "was stopped before it was complete");
   }
   figures.add("largest_singular_value", "largest singular value",
               significant(largest.value, 8) + (largest.settled ? "" : " (a lower bound: not settled)"), largest.value);
   figures.add("largest_singular_value_settled", "", "", largest.settled);
   add_atom_norms(a, size, figures);
-  if (!size) return {};
+  if (!size || summary.seeing_rows() == 0) return {};
   add_symmetry(a, *size, figures);
   return add_memory(a, *size, figures);
 }

@@ -30,6 +30,13 @@ TEST_CASE("inspect counts what is wrong with a response") {
   CHECK(json["admm_memory"]["factor"] == 3 * 4 / 2 * sizeof(float));
 }
 
+TEST_CASE("inspect finds mirror symmetry among the rows that see") {
+  const TemporaryFolder folder;
+  // Left-right mirrored rows, a blind one between them.
+  put_npy(folder, "A.npy", {3, 4}, {1, 0.5, 0.25, 0, 0, 0, 0, 0, 0.5, 1, 0, 0.25});
+  CHECK(json_from("inspect A.npy --size 2x2 --json", folder.path())["mirror_symmetry"] == 2);
+}
+
 TEST_CASE("inspect and reconstruct agree on the memory of admm") {
   const TemporaryFolder folder;
   const auto response = make_small_eye(folder);
