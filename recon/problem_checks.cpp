@@ -46,9 +46,9 @@ hal::Result<void> check_plan(const Plan& plan) {
 
 hal::Result<void> check_pair(const Objective& objective, const Plan& plan) {
   if (!supports(plan.solver, objective.basis, objective.constraint)) {
-    return fail(ErrorCode::usage, std::string(name(plan.solver)),
-                "does not take basis " + std::string(name(objective.basis)) + " with constraint " +
-                    std::string(name(objective.constraint)) +
+    return fail(ErrorCode::usage, "solver",
+                std::string(name(plan.solver)) + " does not take basis " + std::string(name(objective.basis)) +
+                    " with constraint " + std::string(name(objective.constraint)) +
                     "; these solvers do: " + solvers_for(objective.basis, objective.constraint));
   }
   if (plan.solver == SolverKind::tikhonov && !(objective.lambda > 0.0)) {

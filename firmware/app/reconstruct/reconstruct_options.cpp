@@ -57,10 +57,10 @@ void add_files(CLI::App& command, ReconstructOptions& o) {
 void add_problem(CLI::App& command, ReconstructOptions& o) {
   command.add_option("--solver", o.solver, "admm (default) or tikhonov")
       ->type_name("NAME")
-      ->check(one_of(names_in(solver_names()), {"pdhg", "adm", "fista", "cp", "tsvd", "omp"}));
-  command.add_option("--basis", o.basis, "where the picture is sparse: identity (default) or dct")
+      ->check(one_of(names_in(solver_names()), {"pdhg", "adm", "tsvd", "omp"}));
+  command.add_option("--basis", o.basis, "where the picture is sparse: identity (default), dct, haar, db4, dft or tv")
       ->type_name("NAME")
-      ->check(one_of(names_in(basis_names()), {"haar", "db4", "tv"}));
+      ->check(one_of(names_in(basis_names()), {}));
   auto* nonnegative = command.add_flag("--nonnegative", o.nonnegative, "constraint x >= 0");
   command.add_option("--box", o.box, "constraint LO <= x <= HI, such as 0,1")
       ->type_name("LO,HI")
@@ -151,9 +151,11 @@ std::string reconstruct_footer() {
   return "Solves min 1/2 ||W^(1/2)(Ax-y)||^2 + lambda ||Psi x||_1 within the constraint, tikhonov with\n"
          "lambda/2 ||x||^2 instead. One unit of y is one fully seen pixel at white; x is in 0..1 of display white.\n\n"
          "What goes with what:\n"
-         "  solver     basis             constraint                      iterations, rho, relaxation\n"
-         "  admm       identity or dct   none, --nonnegative or --box    yes\n"
-         "  tikhonov   identity          none                            no: it is direct\n"
+         "  solver     basis                             constraint\n"
+         "  admm, cp   every basis                       none, --nonnegative or --box\n"
+         "  fista      identity                          none, --nonnegative or --box\n"
+         "  fista      dct, haar, db4, dft               none\n"
+         "  tikhonov   identity                          none; direct: no iterations, rho or relaxation\n"
          "Either --lambda or --sigma, always. Weights are inverse variances relative to --sigma; with (frames, M) "
          "they\n"
          "change from frame to frame. A NaN in y is an error unless its weight is 0.\n"

@@ -186,8 +186,8 @@ TEST_CASE("reconstruct --help states what goes with what and an example") {
   const Outcome help = run_compueye("reconstruct --help", folder.path());
   CHECK(help.exit_code == 0);
   CHECK(help.err.empty());
-  for (const char* part :
-       {"admm       identity or dct", "tikhonov   identity", "numbered", "compueye reconstruct --response"}) {
+  for (const char* part : {"admm, cp   every basis", "fista      identity", "tikhonov   identity", "numbered",
+                           "compueye reconstruct --response"}) {
     CAPTURE(part);
     CHECK(help.out.find(part) != std::string::npos);
   }
