@@ -16,7 +16,8 @@ namespace compueye::recon {
 /// scenes; docs/lambda-rule.md shows how far the rule lands from the best lambda on scenes it has not seen.
 /// The second is the posterior mean under a Gaussian prior.
 ///
-/// Errors: out_of_range when sigma is negative or not finite, or when A is all zero.
+/// Without noise, or for an A that sees nothing, a millionth of the norms keeps lambda above zero.
+/// Error: out_of_range when sigma is negative or not finite.
 [[nodiscard]] hal::Result<double> lambda_by_rule(const Response& response, int image_rows, int image_cols,
                                                  SolverKind solver, BasisKind basis, double sigma);
 

@@ -353,7 +353,7 @@ std::vector<KeySpec> solver_keys() {
        .name = "rho",
        .type = real,
        .range = {1e-12, 1e12},
-       .meaning = "ADMM penalty; left out, it follows from lambda",
+       .meaning = "ADMM penalty; left out, it follows from the response",
        .store = [](Board& b, const V& v) { b.reconstruction.rho = real_of(v); }},
       {.section = "reconstruction",
        .name = "relaxation",

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "calib/nominal.hpp"
+#include "firmware/app/board/dead_ommatidia.hpp"
 #include "firmware/app/eye/kept_atom_norm.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/penalty_rule.hpp"
@@ -16,25 +17,6 @@ std::vector<std::uint8_t> seeing_flags(const recon::Response& response) {
   std::vector<std::uint8_t> sees(static_cast<std::size_t>(response.rows()), 0);
   for (const std::int32_t m : response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
   return sees;
-}
-
-/// A dead ommatidium tells nothing: with an empty row every solver leaves it out.
-recon::Response without_rows(const recon::Response& response, const std::vector<int>& dead) {
-  std::vector<std::int64_t> row_start{0};
-  std::vector<std::int32_t> columns;
-  std::vector<double> values;
-  for (int m = 0; m < response.rows(); ++m) {
-    if (!std::binary_search(dead.begin(), dead.end(), m)) {
-      response.for_each_in_row(m, [&](std::int32_t n, double value) {
-        columns.push_back(n);
-        values.push_back(value);
-      });
-    }
-    row_start.push_back(static_cast<std::int64_t>(values.size()));
-  }
-  auto kept = recon::Response::from_csr(response.rows(), response.cols(), std::move(row_start), std::move(columns),
-                                        std::move(values));
-  return std::move(*kept);  // rows of a valid response are valid
 }
 
 hal::Result<LambdaChoice> choose_lambda(const Board& board, const EyeRequest& request, const recon::Response& response,
@@ -72,7 +54,7 @@ hal::Result<std::unique_ptr<recon::Response>> living_response(const Board& board
   if (!response) return tl::unexpected(std::move(response.error()));
   sees = seeing_flags(*response);
   if (board.sensor.dead.empty()) return std::make_unique<recon::Response>(std::move(*response));
-  return std::make_unique<recon::Response>(without_rows(*response, board.sensor.dead));
+  return std::make_unique<recon::Response>(without_dead(*response, board.sensor.dead));
 }
 
 }  // namespace

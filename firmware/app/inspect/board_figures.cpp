@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "calib/nominal.hpp"
+#include "firmware/app/board/dead_ommatidia.hpp"
 #include "firmware/app/board/reconstruction_names.hpp"
 #include "firmware/app/report/number_text.hpp"
 #include "firmware/files/factor_cache.hpp"
@@ -92,25 +93,6 @@ void add_solver(const Board& board, FigureList& figures) {
                {"relaxation", r.relaxation}});
 }
 
-recon::Response without_dead(recon::Response response, const std::vector<int>& dead) {
-  if (dead.empty()) return response;
-  std::vector<std::int64_t> start{0};
-  std::vector<std::int32_t> columns;
-  std::vector<double> values;
-  for (int m = 0; m < response.rows(); ++m) {
-    if (!std::binary_search(dead.begin(), dead.end(), m)) {
-      response.for_each_in_row(m, [&](std::int32_t n, double value) {
-        columns.push_back(n);
-        values.push_back(value);
-      });
-    }
-    start.push_back(static_cast<std::int64_t>(values.size()));
-  }
-  auto living = recon::Response::from_csr(response.rows(), response.cols(), std::move(start), std::move(columns),
-                                          std::move(values));
-  return std::move(*living);  // rows of a valid response are valid
-}
-
 Result<double> add_rules(const Board& board, const recon::Response& a, FigureList& figures) {
   const ReconstructionSettings& r = board.reconstruction;
   const auto by_rule =
@@ -173,7 +155,7 @@ Result<void> add_board_figures(const Board& board, const recon::Progress& progre
   add_solver(board, figures);
   auto nominal = calib::nominal_response(board.eye, board.object, progress);
   if (!nominal) return tl::unexpected(std::move(nominal.error()));
-  const recon::Response a = without_dead(std::move(*nominal), board.sensor.dead);
+  const recon::Response a = without_dead(*nominal, board.sensor.dead);
   const auto seeing = static_cast<int>(a.seeing_rows().size());
   figures.add("seeing_channels", "seeing channels", fmt::format("{} of {}", grouped(seeing), grouped(a.rows())),
               seeing);
