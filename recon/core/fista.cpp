@@ -1,7 +1,6 @@
 #include "recon/core/fista.hpp"
 
 #include "recon/core/frame_outcome.hpp"
-#include "recon/core/multiversion.hpp"
 #include "recon/core/proximal.hpp"
 #include "recon/core/square_root.hpp"
 #include "recon/core/vector_sums.hpp"

@@ -15,12 +15,8 @@ struct Fourier2d {
   const T* col_table = nullptr;  ///< cols x cols
 };
 
-/// Elements of T wanted as scratch.
-[[nodiscard]] constexpr std::size_t fourier_scratch_size(std::size_t rows, std::size_t cols) noexcept {
-  return 3 * (rows > cols ? rows : cols) * 16;
-}
-
-/// out = Psi in; in and out may be the same picture.
+/// out = Psi in; in and out may be the same picture. `scratch` takes dct_scratch_size() elements, as every separable
+/// transform does.
 void fourier_forward(const Fourier2d<float>& psi, const float* in, float* out, float* scratch) noexcept;
 void fourier_forward(const Fourier2d<double>& psi, const double* in, double* out, double* scratch) noexcept;
 

@@ -4,7 +4,7 @@
 
 namespace compueye::recon::core {
 
-/// Every sum in the frame path runs over 16 lanes: element k goes to lane k mod 16, lanes are then added in the fixed
+/// The frame path's long sums run over 16 lanes: element k goes to lane k mod 16, lanes are then added in the fixed
 /// tree 8, 4, 2, 1. Whatever vector width a processor has, the bits are the same.
 inline constexpr std::size_t lanes = 16;
 

@@ -20,12 +20,8 @@ struct WaveletShape {
 
 [[nodiscard]] int wavelet_levels(const WaveletShape& shape) noexcept;
 
-/// Elements of T wanted as scratch.
-[[nodiscard]] constexpr std::size_t wavelet_scratch_size(std::size_t rows, std::size_t cols) noexcept {
-  return 3 * (rows > cols ? rows : cols) * 16;
-}
-
-/// out = Psi in; in and out may be the same picture.
+/// out = Psi in; in and out may be the same picture. `scratch` takes dct_scratch_size() elements, as every separable
+/// transform does.
 void wavelet_forward(const WaveletShape& shape, const float* in, float* out, float* scratch) noexcept;
 void wavelet_forward(const WaveletShape& shape, const double* in, double* out, double* scratch) noexcept;
 
