@@ -36,6 +36,8 @@ struct Plan {
   /// Seeing channels that may have a weight other than one in a frame; -1 = a tenth of them, rounded up. Costs
   /// max_reweighted * (M + max_reweighted) numbers of workspace.
   int max_reweighted = -1;
+  /// Fills in FrameInfo::duality_gap, which costs about one iteration a frame.
+  bool measure_gap = false;
 };
 
 /// A problem that is set up: operator tables, basis tables and factor. Immutable after create(); solve() may run from

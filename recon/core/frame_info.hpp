@@ -37,6 +37,9 @@ struct FrameInfo {
   double residual = 0.0;         ///< ||W^(1/2)(Ax-y)||, in units of y
   double primal_residual = 0.0;  ///< ||x - z|| / ||x||, z being what is handed out; 0 for direct solvers
   double dual_residual = 0.0;    ///< ||z - z before|| / ||u||, u the scaled dual variables; 0 for direct solvers
+  /// Objective minus a dual objective, so at least as much as the objective lies above the optimum, to about 1e-6 of
+  /// the objective in float32. Negative: not asked for (Plan::measure_gap), or the solver has none.
+  double duality_gap = -1.0;
 };
 
 }  // namespace compueye::recon
