@@ -4,8 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "recon/core/basis.hpp"
-#include "recon/problem_tables.hpp"
+#include "recon/atom_norms.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -35,36 +34,13 @@ double factor_of(BasisKind basis) noexcept {
   return pixel_factor;
 }
 
-/// Squared norms of A psi_j: those of A's columns, or the sums over its rows' squared transforms. Differences are no
-/// basis; the DCT, in which D'D is diagonal, stands in for them.
-std::vector<double> squared_atom_norms(const Response& response, int image_rows, int image_cols, BasisKind basis) {
-  const auto n = static_cast<std::size_t>(response.cols());
-  std::vector<double> squares(n, 0.0), row(n, 0.0), coefficients(n);
-  if (basis == BasisKind::identity) {
-    for (int m = 0; m < response.rows(); ++m) {
-      response.for_each_in_row(m, [&](std::int32_t k, double v) { squares[static_cast<std::size_t>(k)] += v * v; });
-    }
-    return squares;
-  }
-  OwnedTables<double> tables;
-  fill_basis(basis == BasisKind::tv ? BasisKind::dct : basis, image_rows, image_cols, tables);
-  std::vector<double> scratch(tables.problem.psi.scratch_size());
-  for (const std::int32_t m : response.seeing_rows()) {
-    std::fill(row.begin(), row.end(), 0.0);
-    response.for_each_in_row(m, [&](std::int32_t k, double v) { row[static_cast<std::size_t>(k)] = v; });
-    core::analyse(tables.problem.psi, row.data(), coefficients.data(), scratch.data());
-    for (std::size_t k = 0; k < n; ++k) squares[k] += coefficients[k] * coefficients[k];
-  }
-  return squares;
-}
-
 }  // namespace
 
 double median_atom_norm(const Response& response, int image_rows, int image_cols, BasisKind basis) {
-  std::vector<double> squares = squared_atom_norms(response, image_rows, image_cols, basis);
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return std::sqrt(*middle);
+  std::vector<double> norms = atom_norms(response, image_rows, image_cols, basis);
+  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
+  std::nth_element(norms.begin(), middle, norms.end());
+  return *middle;
 }
 
 hal::Result<double> lambda_by_rule(const Response& response, int image_rows, int image_cols, SolverKind solver,
@@ -78,7 +54,7 @@ hal::Result<double> lambda_by_rule(double atom_norm, SolverKind solver, BasisKin
                      "is " + std::to_string(sigma) + ", expected a finite number of 0 or more");
   }
   const double size = atom_norm > 0.0 ? atom_norm : 1.0;
-  if (solver == SolverKind::tikhonov) {
+  if (solver == SolverKind::tikhonov || solver == SolverKind::tsvd) {
     const double deviation = std::max(sigma / expected_pixel_deviation, least_share_of_norm * size);
     return deviation * deviation;
   }

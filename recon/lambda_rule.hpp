@@ -6,8 +6,8 @@ namespace compueye::recon {
 
 /// lambda from the noise: `sigma` is the standard deviation of one sample, in units of y (one fully seen white pixel).
 ///
-///   l1:        lambda = c sigma median_j ||A psi_j||_2, psi_j the elements of the basis
-///   tikhonov:  lambda = (sigma / s)^2, s the standard deviation expected of a pixel
+///   l1, omp:         lambda = c sigma median_j ||A psi_j||_2, psi_j the elements of the basis
+///   tikhonov, tsvd:  lambda = (sigma / s)^2, s the standard deviation expected of a pixel
 ///
 /// The first is the universal choice for the lasso, sigma ||a_j|| sqrt(2 log N) (Bickel, Ritov & Tsybakov 2009,
 /// "Simultaneous analysis of Lasso and Dantzig selector", eq. 4.1), with the columns of very different length that a

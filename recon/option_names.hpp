@@ -14,6 +14,7 @@ struct Named {
   Kind kind;
 };
 
+/// Without adm as published, which is no solver to choose but one to be shown beside the others.
 [[nodiscard]] std::span<const Named<SolverKind>> solver_names() noexcept;
 [[nodiscard]] std::span<const Named<BasisKind>> basis_names() noexcept;
 [[nodiscard]] std::span<const Named<ConstraintKind>> constraint_names() noexcept;

@@ -2,10 +2,13 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
+#include "recon/atom_norms.hpp"
 #include "recon/dct_tables.hpp"
 #include "recon/fourier_tables.hpp"
+#include "recon/singular_modes.hpp"
 #include "recon/smoothing.hpp"
 #include "recon/step_sizes.hpp"
 
@@ -53,12 +56,16 @@ void fill_numbers(const Objective& objective, const Plan& plan, core::FrameProbl
   problem.lo = box ? static_cast<T>(objective.lo) : T(0);
   problem.hi = box ? static_cast<T>(objective.hi) : infinity;
   problem.lambda = static_cast<T>(objective.lambda);
+  problem.bounded = objective.epsilon.has_value();
+  problem.epsilon = static_cast<T>(objective.epsilon.value_or(0.0));
+  problem.measure_gap = plan.measure_gap;
   problem.rho = static_cast<T>(plan.rho);
   problem.relaxation = static_cast<T>(plan.relaxation);
   problem.point.basis = objective.basis;
   problem.point.solver = plan.solver;
   problem.point.precision = plan.precision;
-  problem.point.iterations = plan.solver == SolverKind::tikhonov ? 1 : plan.iterations;
+  const bool direct = plan.solver == SolverKind::tikhonov || plan.solver == SolverKind::tsvd;
+  problem.point.iterations = direct ? 1 : plan.iterations;
   problem.point.op = problem.a.kind;
 }
 
@@ -116,6 +123,15 @@ template <class T>
 void fill_choice(const Response& seeing, const Objective& objective, const Plan& plan, OwnedTables<T>& tables) {
   core::FrameProblem<T>& problem = tables.problem;
   fill_numbers(objective, plan, problem);
+  const auto values = seeing.values();
+  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  problem.column_norm = static_cast<T>(std::sqrt(squares / seeing.cols()));
+  if (plan.solver == SolverKind::omp) {
+    const std::vector<double> norms =
+        atom_norms(seeing, static_cast<int>(problem.image_rows), static_cast<int>(problem.image_cols), objective.basis);
+    tables.atom_norms.assign(norms.begin(), norms.end());
+    problem.atom_norms = tables.atom_norms.data();
+  }
   if (plan.solver == SolverKind::fista) problem.lipschitz = static_cast<T>(squared_norm_bound(seeing));
   if (plan.solver != SolverKind::chambolle_pock) return;
   const PrimalDualSteps steps = primal_dual_steps(seeing, problem.psi.squared_norm());
@@ -126,6 +142,24 @@ void fill_choice(const Response& seeing, const Objective& objective, const Plan&
   problem.basis_step = static_cast<T>(steps.basis);
 }
 
+template <class T>
+hal::Result<void> fill_modes(const Response& seeing, const Objective& objective, const Plan& plan,
+                             const Progress& progress, OwnedTables<T>& tables) {
+  core::FrameProblem<T>& problem = tables.problem;
+  const double least_square = plan.rank > 0 ? 0.0 : objective.lambda;
+  auto found = singular_modes(seeing, static_cast<int>(problem.image_rows), static_cast<int>(problem.image_cols),
+                              plan.rank, least_square, progress);
+  if (!found) return tl::unexpected(found.error());
+  tables.modes.assign(found->left.begin(), found->left.end());
+  for (const double value : found->values) tables.mode_weights.push_back(static_cast<T>(1.0 / (value * value)));
+  problem.modes = {found->values.size(), tables.modes.data(), tables.mode_weights.data()};
+  return {};
+}
+
+template hal::Result<void> fill_modes(const Response&, const Objective&, const Plan&, const Progress&,
+                                      OwnedTables<float>&);
+template hal::Result<void> fill_modes(const Response&, const Objective&, const Plan&, const Progress&,
+                                      OwnedTables<double>&);
 template hal::Result<void> fill_operator(const Response&, OwnedTables<float>&);
 template hal::Result<void> fill_operator(const Response&, OwnedTables<double>&);
 template void fill_basis(BasisKind, int, int, OwnedTables<float>&);

@@ -22,11 +22,14 @@ struct OwnedTables {
   std::vector<T> inverse;
   std::vector<T> primal_steps;
   std::vector<T> dual_steps;
+  std::vector<T> atom_norms;
+  std::vector<T> modes;
+  std::vector<T> mode_weights;
   core::FrameProblem<T> problem;
 
   [[nodiscard]] std::size_t bytes() const noexcept {
     return (values.size() + row_table.size() + col_table.size() + metric.size() + inverse.size() + primal_steps.size() +
-            dual_steps.size()) *
+            dual_steps.size() + atom_norms.size() + modes.size() + mode_weights.size()) *
                sizeof(T) +
            (row_start.size() + columns.size()) * sizeof(std::uint32_t);
   }
@@ -40,9 +43,14 @@ template <class T>
 template <class T>
 void fill_basis(BasisKind kind, int image_rows, int image_cols, OwnedTables<T>& tables);
 
-/// The numbers of objective and plan, and the step sizes of solvers without a factor. After fill_operator() and
-/// fill_basis().
+/// The numbers of objective and plan, and the step sizes and norms of solvers without a factor. After fill_operator()
+/// and fill_basis().
 template <class T>
 void fill_choice(const Response& seeing, const Objective& objective, const Plan& plan, OwnedTables<T>& tables);
+
+/// The singular pairs that tsvd keeps. Errors: those of singular_modes().
+template <class T>
+[[nodiscard]] hal::Result<void> fill_modes(const Response& seeing, const Objective& objective, const Plan& plan,
+                                           const Progress& progress, OwnedTables<T>& tables);
 
 }  // namespace compueye::recon

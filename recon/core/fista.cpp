@@ -1,5 +1,6 @@
 #include "recon/core/fista.hpp"
 
+#include "recon/core/duality_gap.hpp"
 #include "recon/core/frame_outcome.hpp"
 #include "recon/core/proximal.hpp"
 #include "recon/core/square_root.hpp"
@@ -8,7 +9,10 @@
 namespace compueye::recon::core {
 namespace {
 
-constexpr double converged_below = 1e-4;
+/// Of the objective; the objective itself is then several times closer to its optimum.
+constexpr double converged_gap = 2e-4;
+/// Relative step, where no gap is defined.
+constexpr double converged_step = 1e-6;
 
 template <class T>
 class Fista {
@@ -23,7 +27,8 @@ class Fista {
         next_(memory.take<T>(n_)),
         picture_(memory.take<T>(n_)),
         gradient_(memory.take<T>(n_)),
-        scratch_(memory.take<T>(problem.psi.scratch_size())) {}
+        scratch_(memory.take<T>(problem.psi.scratch_size())),
+        gap_(problem, true, memory) {}
 
   FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
     FrameInfo info = begin_outcome(problem_);
@@ -84,9 +89,12 @@ class Fista {
     synthesise(problem_.psi, last_, picture_, scratch_);
     const double penalty = static_cast<double>(problem_.lambda) * static_cast<double>(sum_of_magnitudes(last_, n_));
     evaluate(samples_, picture_, penalty, residual_, info);
+    const double gap = gap_.measure(samples_, picture_, nullptr, info.objective);
+    info.duality_gap = problem_.measure_gap ? gap : -1.0;
     info.primal_residual = step_share;
     info.iterations = problem_.point.iterations;
-    info.health = step_share < converged_below ? Health::converged : Health::budget_used;
+    const bool settled = gap >= 0.0 ? gap <= converged_gap * info.objective : step_share < converged_step;
+    info.health = settled ? Health::converged : Health::budget_used;
   }
 
   const FrameProblem<T>& problem_;
@@ -99,6 +107,7 @@ class Fista {
   T* picture_;   // Psi' point, then A' W (y - A Psi' point)
   T* gradient_;  // its coefficients
   T* scratch_;
+  DualityGap<T> gap_;
 };
 
 }  // namespace

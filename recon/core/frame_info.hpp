@@ -6,7 +6,7 @@ namespace compueye::recon {
 
 enum class OperatorKind : std::uint8_t { dense, csr };
 enum class BasisKind : std::uint8_t { identity, dct, haar, db4, dft, tv };
-enum class SolverKind : std::uint8_t { admm, tikhonov, fista, chambolle_pock };
+enum class SolverKind : std::uint8_t { admm, tikhonov, fista, chambolle_pock, adm, adm_as_published, omp, tsvd };
 enum class Precision : std::uint8_t { f32, f64 };
 
 /// One way of turning y into x, with a known cost.

@@ -55,9 +55,10 @@ void WeightedStep<T>::substitute() noexcept {
 }
 
 template <class T>
-void WeightedStep<T>::apply(T* v) noexcept {
+void WeightedStep<T>::apply(T* v, const T* shift) noexcept {
   const std::size_t rows = problem_->a.rows;
   samples_.residual(v, residual_);
+  for (std::size_t i = 0; shift != nullptr && i < rows; ++i) residual_[i] -= shift[i];
   if (reweighted_ > 0) substitute();
   flush_tiny(residual_, rows);
   multiply(problem_->inverse, residual_, correction_);

@@ -1,0 +1,162 @@
+#include "recon/core/adm.hpp"
+
+#include "recon/core/duality_gap.hpp"
+#include "recon/core/frame_outcome.hpp"
+#include "recon/core/proximal.hpp"
+#include "recon/core/residual_ball.hpp"
+#include "recon/core/split_residuals.hpp"
+#include "recon/core/square_root.hpp"
+#include "recon/core/vector_sums.hpp"
+#include "recon/core/weighted_step.hpp"
+
+namespace compueye::recon::core {
+namespace {
+
+/// Step of the multiplier: convergence is proven below (1 + sqrt 5) / 2 (Glowinski 1984).
+constexpr double multiplier_step = 1.618;
+constexpr double bound_tolerance = 1e-3;
+
+template <class T>
+class Adm {
+ public:
+  Adm(const FrameProblem<T>& problem, Workspace& memory) noexcept
+      : problem_(problem),
+        n_(problem.pixels()),
+        step_(problem, memory),
+        ball_(problem, memory),
+        x_(memory.take<T>(n_)),
+        pull_(memory.take<T>(n_)),
+        sparse_(memory.take<T>(n_)),
+        point_(memory.take<T>(n_)),
+        before_(memory.take<T>(n_)),
+        coefficients_(memory.take<T>(n_)),
+        scratch_(memory.take<T>(problem.psi.scratch_size())),
+        gap_(problem, problem.measure_gap, memory) {
+    constexpr T unbounded = T(1e30);
+    lo_ = problem.constrained && problem.lo > -unbounded ? problem.lo : -unbounded;
+    hi_ = problem.constrained && problem.hi < unbounded ? problem.hi : unbounded;
+  }
+
+  FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
+    FrameInfo info = begin_outcome(problem_);
+    if (!step_.begin(y, weights)) {
+      deliver(x_, false, n_, info, x);
+      return info;
+    }
+    for (std::size_t k = 0; k < n_; ++k) x_[k] = pull_[k] = sparse_[k] = T(0);
+    threshold_ = problem_.bounded ? bounded_penalty() : problem_.lambda / problem_.rho;
+    if (problem_.bounded) ball_.begin(step_.samples());
+    for (int k = 0; k < problem_.point.iterations; ++k) iterate();
+    const bool finite = all_finite(x_, n_);  // a clip would turn NaN into a number
+    finish(info);
+    deliver(sparse_, finite, n_, info, x);
+    return info;
+  }
+
+ private:
+  /// The penalty that lambda / rho would be if lambda were the noise that epsilon allows times the norm of a column,
+  /// kept within sight of the brightest pixel that y may hold: outside, the iteration crawls.
+  T bounded_penalty() noexcept {
+    const FrameSamples<T>& samples = step_.samples();
+    T* weighted = step_.row_scratch();
+    for (std::size_t i = 0; i < problem_.a.rows; ++i) weighted[i] = samples.weights()[i] * samples.values()[i];
+    for (std::size_t k = 0; k < n_; ++k) point_[k] = T(0);
+    adjoint_accumulate(problem_.a, weighted, point_);
+    analyse(problem_.psi, point_, coefficients_, scratch_);
+    double largest = 0.0;
+    for (std::size_t k = 0; k < n_; ++k) {
+      const double size = static_cast<double>(coefficients_[k] < T(0) ? -coefficients_[k] : coefficients_[k]);
+      if (size > largest) largest = size;
+    }
+    const double norm = static_cast<double>(problem_.column_norm);
+    const double brightest = largest / (norm * norm);
+    const double channels = samples.channels_used() > 0 ? static_cast<double>(samples.channels_used()) : 1.0;
+    const double noise = static_cast<double>(problem_.epsilon) / square_root(channels);
+    const double wanted = 0.5 * noise * norm / static_cast<double>(problem_.rho);
+    const double least = 1e-3 * brightest, most = 0.1 * brightest;
+    const double kept = wanted < least ? least : (wanted > most ? most : wanted);
+    return static_cast<T>(kept > 0.0 ? kept : 1.0);
+  }
+
+  /// pull is A'u over the penalty, sparse the proximal point of x + pull; what the step makes of sparse - pull is the
+  /// next multiplier at a step of one.
+  void iterate() noexcept {
+    for (std::size_t k = 0; k < n_; ++k) before_[k] = sparse_[k];
+    for (std::size_t k = 0; k < n_; ++k) point_[k] = x_[k] + pull_[k];
+    shrink(point_);
+    subtract(sparse_, pull_, point_, n_);
+    const T* shift = problem_.bounded ? ball_.project() : nullptr;
+    step_.apply(point_, shift);
+    const T step = static_cast<T>(multiplier_step);
+    if (problem_.bounded) ball_.update(step_.correction(), step);
+    for (std::size_t k = 0; k < n_; ++k) {
+      pull_[k] += point_[k] - sparse_[k];
+      x_[k] += step * (point_[k] - x_[k]);
+    }
+    flush_tiny(pull_, n_);
+    flush_tiny(x_, n_);
+  }
+
+  void shrink(const T* from) noexcept {
+    const bool pixels = problem_.psi.kind == BasisKind::identity;
+    if (!pixels) analyse(problem_.psi, from, coefficients_, scratch_);
+    const T* in = pixels ? from : coefficients_;
+    T* out = pixels ? sparse_ : coefficients_;
+    for (std::size_t k = 0; k < n_; ++k) out[k] = prox_l1_box(in[k], threshold_, lo_, hi_);
+    flush_tiny(out, n_);
+    if (!pixels) synthesise(problem_.psi, coefficients_, sparse_, scratch_);
+  }
+
+  void finish(FrameInfo& info) noexcept {
+    analyse(problem_.psi, sparse_, coefficients_, scratch_);
+    const double magnitudes = static_cast<double>(sum_of_magnitudes(coefficients_, n_));
+    const double penalty = problem_.bounded ? magnitudes : static_cast<double>(problem_.lambda) * magnitudes;
+    evaluate(step_.samples(), sparse_, penalty, step_.row_scratch(), info);
+    if (problem_.bounded) info.objective = penalty;
+    info.duality_gap = gap_.measure(step_.samples(), sparse_, nullptr, info.objective);
+    SplitResiduals residuals;
+    residuals.add(point_, sparse_, before_, pull_, n_);
+    residuals.judge(problem_.point.iterations, info);
+    const double most = static_cast<double>(problem_.epsilon) * (1.0 + bound_tolerance);
+    if (problem_.bounded && !(info.residual <= most)) info.health = Health::budget_used;
+  }
+
+  const FrameProblem<T>& problem_;
+  std::size_t n_;
+  WeightedStep<T> step_;
+  ResidualBall<T> ball_;
+  T* x_;       // the multiplier
+  T* pull_;    // A'u / penalty
+  T* sparse_;  // proximal point
+  T* point_;   // where the quadratic step begins, then what it gives
+  T* before_;  // sparse of the iteration before
+  T* coefficients_;
+  T* scratch_;
+  DualityGap<T> gap_;
+  T threshold_ = T(0);
+  T lo_ = T(0);
+  T hi_ = T(0);
+};
+
+}  // namespace
+
+template <class T>
+FrameInfo solve_adm(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
+                    float* x) noexcept {
+  Workspace memory(workspace);
+  return Adm<T>(problem, memory).solve(y, weights, x);
+}
+
+template <class T>
+std::size_t adm_bytes(const FrameProblem<T>& problem) noexcept {
+  Workspace counter;
+  const Adm<T> adm(problem, counter);
+  return counter.used();
+}
+
+template FrameInfo solve_adm(const FrameProblem<float>&, const float*, const float*, std::byte*, float*) noexcept;
+template FrameInfo solve_adm(const FrameProblem<double>&, const float*, const float*, std::byte*, float*) noexcept;
+template std::size_t adm_bytes(const FrameProblem<float>&) noexcept;
+template std::size_t adm_bytes(const FrameProblem<double>&) noexcept;
+
+}  // namespace compueye::recon::core
