@@ -101,7 +101,11 @@ struct Reconstructor::Tables {
     tables.problem.channels = static_cast<std::size_t>(channels);
     tables.problem.max_reweighted = static_cast<std::size_t>(plan.max_reweighted);
     tables.problem.inverse.order = seeing.size();
-    if (plan.solver == SolverKind::tsvd) return fill_modes(sees, objective, plan, progress, tables);
+    if (plan.solver == SolverKind::tsvd) {
+      return fill_modes(sees, objective, plan, progress, tables).map([&] {
+        plan.rank = static_cast<int>(tables.problem.modes.rank);
+      });
+    }
     return uses_factor(plan.solver) ? fill_factor(sees, tables, std::move(stored), progress) : hal::Result<void>{};
   }
 

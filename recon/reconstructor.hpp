@@ -70,7 +70,7 @@ class Reconstructor {
   [[nodiscard]] int pixels() const noexcept;  ///< N
   [[nodiscard]] int seeing_channels() const noexcept;
   [[nodiscard]] const Objective& objective() const noexcept;
-  [[nodiscard]] const Plan& plan() const noexcept;  ///< with every rule resolved (rho, max_reweighted)
+  [[nodiscard]] const Plan& plan() const noexcept;  ///< with every rule resolved (rho, rank, max_reweighted)
   [[nodiscard]] OperatingPoint operating_point() const noexcept;
 
   /// Exact size of the workspace that solve() wants, for 64-byte aligned memory.

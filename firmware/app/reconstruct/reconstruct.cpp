@@ -85,6 +85,14 @@ Result<Inputs> read_inputs(const ReconstructOptions& o, PictureSize size, const 
   return inputs;
 }
 
+/// The solver knows of lambda and response, people of the options and files behind them.
+std::string place_of(const ReconstructOptions& o, const std::string& place) {
+  if (o.rank && place == "rank") return "--rank";
+  if (o.rho && place == "rho") return "--rho";
+  if (o.lambda && place == "lambda") return "--lambda";
+  return o.response;
+}
+
 Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatement problem, const Inputs& inputs,
                                     const recon::Progress& progress) {
   const recon::Response& a = *inputs.response;
@@ -98,8 +106,7 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatemen
   }
   auto made = recon::Reconstructor::create(a, problem.size.rows, problem.size.cols, problem.objective, problem.plan,
                                            std::nullopt, progress);
-  // The solver knows of lambda and response, people of the options and files behind them.
-  if (!made && made.error().code != ErrorCode::interrupted) made.error().place = o.response;
+  if (!made && made.error().code != ErrorCode::interrupted) made.error().place = place_of(o, made.error().place);
   return made;
 }
 
