@@ -3,7 +3,7 @@
 #include "recon/core/duality_gap.hpp"
 #include "recon/core/frame_outcome.hpp"
 #include "recon/core/proximal.hpp"
-#include "recon/core/residual_ball.hpp"
+#include "recon/core/residual_copy.hpp"
 #include "recon/core/split_residuals.hpp"
 #include "recon/core/square_root.hpp"
 #include "recon/core/vector_sums.hpp"
@@ -15,6 +15,9 @@ namespace {
 /// Step of the multiplier: convergence is proven below (1 + sqrt 5) / 2 (Glowinski 1984).
 constexpr double multiplier_step = 1.618;
 constexpr double bound_tolerance = 1e-3;
+/// Of the brightest pixel.
+constexpr double least_threshold = 1e-2;
+constexpr double most_threshold = 0.1;
 
 template <class T>
 class Adm {
@@ -23,7 +26,7 @@ class Adm {
       : problem_(problem),
         n_(problem.pixels()),
         step_(problem, memory),
-        ball_(problem, memory),
+        residual_(problem, memory),
         x_(memory.take<T>(n_)),
         pull_(memory.take<T>(n_)),
         sparse_(memory.take<T>(n_)),
@@ -44,8 +47,7 @@ class Adm {
       return info;
     }
     for (std::size_t k = 0; k < n_; ++k) x_[k] = pull_[k] = sparse_[k] = T(0);
-    threshold_ = problem_.bounded ? bounded_penalty() : problem_.lambda / problem_.rho;
-    if (problem_.bounded) ball_.begin(step_.samples());
+    choose_threshold();
     for (int k = 0; k < problem_.point.iterations; ++k) iterate();
     const bool finite = all_finite(x_, n_);  // a clip would turn NaN into a number
     finish(info);
@@ -54,9 +56,8 @@ class Adm {
   }
 
  private:
-  /// The penalty that lambda / rho would be if lambda were the noise that epsilon allows times the norm of a column,
-  /// kept within sight of the brightest pixel that y may hold: outside, the iteration crawls.
-  T bounded_penalty() noexcept {
+  /// How bright a pixel, or coefficient, y may hold: the largest correlation over the square of a column's norm.
+  double brightest() noexcept {
     const FrameSamples<T>& samples = step_.samples();
     T* weighted = step_.row_scratch();
     for (std::size_t i = 0; i < problem_.a.rows; ++i) weighted[i] = samples.weights()[i] * samples.values()[i];
@@ -69,13 +70,30 @@ class Adm {
       if (size > largest) largest = size;
     }
     const double norm = static_cast<double>(problem_.column_norm);
-    const double brightest = largest / (norm * norm);
-    const double channels = samples.channels_used() > 0 ? static_cast<double>(samples.channels_used()) : 1.0;
-    const double noise = static_cast<double>(problem_.epsilon) / square_root(channels);
-    const double wanted = 0.5 * noise * norm / static_cast<double>(problem_.rho);
-    const double least = 1e-3 * brightest, most = 0.1 * brightest;
-    const double kept = wanted < least ? least : (wanted > most ? most : wanted);
-    return static_cast<T>(kept > 0.0 ? kept : 1.0);
+    return largest / (norm * norm);
+  }
+
+  /// x moves by about a threshold an iteration, so one far below the brightest pixel would crawl. Where lambda / rho is
+  /// that small, or an epsilon takes lambda's place, the residual becomes a variable of its own and the threshold is
+  /// free: half of what lambda / rho would be for a lambda as large as the noise that epsilon allows times the norm of
+  /// a column, within sight of the brightest pixel.
+  void choose_threshold() noexcept {
+    const double bright = brightest(), rho = static_cast<double>(problem_.rho);
+    const double lambda = static_cast<double>(problem_.lambda);
+    double wanted = lambda / rho;
+    if (problem_.bounded) {
+      const std::size_t used = step_.samples().channels_used();
+      const double noise =
+          static_cast<double>(problem_.epsilon) / square_root(used > 0 ? static_cast<double>(used) : 1.0);
+      wanted = 0.5 * noise * static_cast<double>(problem_.column_norm) / rho;
+    }
+    const double least = least_threshold * bright, most = most_threshold * bright;
+    apart_ = problem_.bounded || (lambda > 0.0 && wanted < least);
+    if (apart_ && wanted < least) wanted = least;
+    if (problem_.bounded && wanted > most) wanted = most;
+    if (problem_.bounded && !(wanted > 0.0)) wanted = 1.0;  // nothing to see
+    threshold_ = static_cast<T>(wanted);
+    if (apart_) residual_.begin(step_.samples(), lambda > 0.0 ? static_cast<T>(wanted * rho / lambda) : T(1));
   }
 
   /// pull is A'u over the penalty, sparse the proximal point of x + pull; what the step makes of sparse - pull is the
@@ -85,10 +103,9 @@ class Adm {
     for (std::size_t k = 0; k < n_; ++k) point_[k] = x_[k] + pull_[k];
     shrink(point_);
     subtract(sparse_, pull_, point_, n_);
-    const T* shift = problem_.bounded ? ball_.project() : nullptr;
-    step_.apply(point_, shift);
+    step_.apply(point_, apart_ ? residual_.shift() : nullptr);
     const T step = static_cast<T>(multiplier_step);
-    if (problem_.bounded) ball_.update(step_.correction(), step);
+    if (apart_) residual_.update(step_.correction(), step);
     for (std::size_t k = 0; k < n_; ++k) {
       pull_[k] += point_[k] - sparse_[k];
       x_[k] += step * (point_[k] - x_[k]);
@@ -124,7 +141,7 @@ class Adm {
   const FrameProblem<T>& problem_;
   std::size_t n_;
   WeightedStep<T> step_;
-  ResidualBall<T> ball_;
+  ResidualCopy<T> residual_;
   T* x_;       // the multiplier
   T* pull_;    // A'u / penalty
   T* sparse_;  // proximal point
@@ -133,6 +150,7 @@ class Adm {
   T* coefficients_;
   T* scratch_;
   DualityGap<T> gap_;
+  bool apart_ = false;  // the residual is a variable of its own
   T threshold_ = T(0);
   T lo_ = T(0);
   T hi_ = T(0);

@@ -14,8 +14,9 @@ namespace compueye::recon::core {
 /// penalty of their augmented Lagrangian is 1 / rho, the step of the multiplier, which is x, 1.618.
 ///
 /// With problem.bounded it solves min ||Psi x||_1 subject to ||W^(1/2)(A x - y)|| <= epsilon. Their closed form for
-/// that, too, holds for A A' = I only; here the residual is a second multiplier, with a projection on the ball of its
-/// own, so that the bound holds for every A. The penalty then follows epsilon and the size of y.
+/// that, too, holds for A A' = I only; here the residual is a second multiplier with a proximal map of its own
+/// (core/residual_copy.hpp), so that the bound holds for every A. The same second multiplier serves a lambda so small
+/// that the iteration would crawl with the one factor there is: both penalties then follow the size of y.
 ///
 /// Takes pixels with any constraint, or an orthonormal basis with none. Exactly problem.point.iterations iterations;
 /// converged when x, its sparse copy (which is returned) and their change agree to 1e-3, and the bound holds to 1e-3.
