@@ -127,29 +127,48 @@ double DualityGap<T>::largest_coefficient(const FrameSamples<T>& samples, const 
   return largest_magnitude(coefficients_, n_);
 }
 
+/// sup over lo <= x <= hi of x'v for the best q that pixels have: towards v = 0, or all the way where only one sign of
+/// x is allowed.
 template <class T>
-double DualityGap<T>::box_dual_value(const T* dual) noexcept {
+double DualityGap<T>::pixel_support(double scale) const noexcept {
   const double lo = static_cast<double>(problem_.lo), hi = static_cast<double>(problem_.hi);
   const double lambda = static_cast<double>(problem_.lambda);
-  const bool pixels = problem_.psi.kind == BasisKind::identity;
-  if (!pixels) pull_by_basis(dual);
   double support = 0.0;
   for (std::size_t k = 0; k < n_; ++k) {
-    double v = static_cast<double>(pixels ? back_[k] : excess_[k]);
-    if (pixels) {
-      const double least = v - lambda, most = v + lambda;
-      // The q that makes the support least: towards zero, or all the way where only one sign of x is allowed.
-      if (lo >= 0.0) {
-        v = least;
-      } else if (hi <= 0.0) {
-        v = most;
-      } else {
-        v = least > 0.0 ? least : (most < 0.0 ? most : 0.0);
-      }
-    }
+    const double least = scale * static_cast<double>(back_[k]) - lambda, most = least + 2.0 * lambda;
+    double v = least > 0.0 ? least : (most < 0.0 ? most : 0.0);
+    if (lo >= 0.0) v = least;
+    if (hi <= 0.0) v = most;
     support += v > 0.0 ? hi * v : lo * v;
   }
-  return u_y_ - 0.5 * u_u_ - support;
+  return support;
+}
+
+/// A box takes any u and q, so all that is left is to scale them well: u alone in pixels, both together in a basis.
+template <class T>
+double DualityGap<T>::box_dual_value(const T* dual) noexcept {
+  const auto value = [this](double scale, double support) {
+    return scale * u_y_ - 0.5 * scale * scale * u_u_ - support;
+  };
+  if (problem_.psi.kind == BasisKind::identity) {
+    double best = value(1.0, pixel_support(1.0)), scale = 1.0;
+    for (int step = 0; step < 8; ++step) {
+      scale *= 0.75;
+      const double next = value(scale, pixel_support(scale));
+      if (next > best) best = next;
+    }
+    return best;
+  }
+  pull_by_basis(dual);
+  const double lo = static_cast<double>(problem_.lo), hi = static_cast<double>(problem_.hi);
+  double support = 0.0;
+  for (std::size_t k = 0; k < n_; ++k) {
+    const double v = static_cast<double>(excess_[k]);
+    support += v > 0.0 ? hi * v : lo * v;
+  }
+  double scale = u_u_ > 0.0 ? (u_y_ - support) / u_u_ : 1.0;
+  scale = scale > 1.0 ? 1.0 : (scale > 0.0 ? scale : 0.0);
+  return value(scale, scale * support);
 }
 
 /// The best multiple of u that is feasible.
@@ -171,14 +190,16 @@ double DualityGap<T>::measure(const FrameSamples<T>& samples, const T* x, const 
   if (!wanted_) return -1.0;
   take_residual(samples, x);
   back_project();
-  double value = 0.0;
-  if (boxed_) {
-    take_sizes(samples);
-    value = box_dual_value(dual);
-  } else {
+  take_sizes(samples);
+  const double of_box = boxed_ ? box_dual_value(dual) : 0.0;
+  double value = of_box > 0.0 ? of_box : 0.0;  // no objective is below nought
+  // What serves x >= 0 serves 0 <= x <= hi as well.
+  one_sided_ = one_sided_ || boxed_;
+  if (!boxed_ || (problem_.lo == T(0) && problem_.lambda > T(0))) {
     const double largest = largest_coefficient(samples, dual);
-    take_sizes(samples);  // after tv has moved u
-    value = scaled_dual_value(largest);
+    take_sizes(samples);  // tv has moved u
+    const double scaled = scaled_dual_value(largest);
+    if (scaled > value) value = scaled;
   }
   const double gap = objective - value;
   if (gap != gap) return -1.0;

@@ -36,6 +36,7 @@ class DualityGap {
   void balance_mean(const FrameSamples<T>& samples) noexcept;
   [[nodiscard]] double largest_coefficient(const FrameSamples<T>& samples, const T* dual) noexcept;
   [[nodiscard]] double largest_tv_coefficient(const FrameSamples<T>& samples, const T* dual) noexcept;
+  [[nodiscard]] double pixel_support(double scale) const noexcept;
   [[nodiscard]] double box_dual_value(const T* dual) noexcept;
   [[nodiscard]] double scaled_dual_value(double largest) const noexcept;
 
