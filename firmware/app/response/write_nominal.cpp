@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "calib/nominal.hpp"
+#include "calib/plausible_response.hpp"
 #include "calib/response_summary.hpp"
 #include "firmware/app/board/board.hpp"
 #include "firmware/app/interrupt/interrupt_watch.hpp"
@@ -28,6 +29,7 @@ using hal::Result;
 struct NominalReport {
   std::string board;
   hal::ObjectPlane object;
+  std::optional<std::uint64_t> as_measured;
   calib::ResponseSummary summary;
   double seconds = 0.0;
   std::string out;
@@ -52,6 +54,7 @@ std::string report_text(const NominalReport& r) {
   table.add({"board", r.board});
   table.add({"response", fmt::format("{} ommatidia x {} pixels ({}x{}) at {} mm", grouped(s.ommatidia),
                                      grouped(s.pixels), r.object.rows, r.object.cols, r.object.distance_mm)});
+  if (r.as_measured) table.add({"as measured", fmt::format("with build errors of seed {}", *r.as_measured)});
   table.add({"entries", fmt::format("{} ({} %)", grouped(s.entries), significant(100.0 * r.density(), 3))});
   table.add({"blind rows", grouped(s.blind_rows)});
   table.add({"pixels seen", fmt::format("{} to {} a row, median {:.6g}", grouped(s.support_min), grouped(s.support_max),
@@ -67,6 +70,7 @@ Json report_json(const NominalReport& r) {
   const calib::ResponseSummary& s = r.summary;
   return {{"board", r.board},
           {"distance_mm", r.object.distance_mm},
+          {"as_measured", r.as_measured ? Json(*r.as_measured) : Json()},
           {"ommatidia", s.ommatidia},
           {"pixels", s.pixels},
           {"rows", r.object.rows},
@@ -106,15 +110,19 @@ Result<void> write_nominal(const ResponseOptions& o) {
   const hal::MonotonicClock clock;
   ProgressReporter reporter(clock);
   const std::int64_t began_ns = clock.now_ns();
-  const auto response = calib::nominal_response(board->eye, board->object, [&](auto what, double done, double total) {
+  const calib::Progress progress = [&](auto what, double done, double total) {
     reporter.update(what, done, total);
     return !watch.requested();
-  });
+  };
+  const auto response = o.as_measured
+                            ? calib::plausible_response(board->eye, board->object, {}, *o.as_measured, progress)
+                            : calib::nominal_response(board->eye, board->object, progress);
   reporter.finish();
   if (const auto stopped = watch.check(); !stopped) return stopped;
   if (!response) return tl::unexpected(response.error());
   NominalReport report{board->name,
                        board->object,
+                       o.as_measured,
                        calib::summarise(*response),
                        static_cast<double>(clock.now_ns() - began_ns) * 1e-9,
                        {},

@@ -49,3 +49,33 @@ TEST_CASE("response takes another distance and prints figures without a file") {
   }
   CHECK(names_in(folder.path()).empty());
 }
+
+TEST_CASE("response as measured is another eye for every seed, and solvers take its rows") {
+  const TemporaryFolder folder;
+  const std::string command = "response --board " + board_folder("sim-8x8");
+  const auto drawn = json_from(command + " --out drawn.mtx --json", folder.path());
+  const auto one = json_from(command + " --as-measured 1 --out one.mtx --json", folder.path());
+  const auto again = json_from(command + " --as-measured 1 --out again.mtx --json", folder.path());
+  const auto two = json_from(command + " --as-measured 2 --out two.mtx --json", folder.path());
+  CHECK(drawn["as_measured"].is_null());
+  CHECK(one["as_measured"] == 1);
+  CHECK(again["entries"] == one["entries"]);
+  CHECK(two["as_measured"] == 2);
+  CHECK(one["entries"].get<int>() > drawn["entries"].get<int>());
+  const auto hash = [&](std::string_view name) {
+    const auto response = firmware::read_response(folder / name);
+    REQUIRE(response.has_value());
+    return response->content_hash();
+  };
+  CHECK(hash("one.mtx") == hash("again.mtx"));
+  CHECK(hash("one.mtx") != hash("two.mtx"));
+  CHECK(hash("one.mtx") != hash("drawn.mtx"));
+  CHECK(json_from("inspect drawn.mtx --size 16x16 --json", folder.path())["mirror_symmetry"] == 4);
+  CHECK(json_from("inspect one.mtx --size 16x16 --json", folder.path())["mirror_symmetry"] == 1);
+
+  const Outcome text = run_compueye(command + " --as-measured 1", folder.path());
+  CHECK(text.out.find("seed 1") != std::string::npos);
+  const Outcome help = run_compueye("response --help", folder.path());
+  CHECK(help.out.find("--as-measured") != std::string::npos);
+  check_failed(run_compueye(command + " --as-measured minus", folder.path()), 2, {"--as-measured", "minus"});
+}
