@@ -9,8 +9,6 @@
 namespace compueye::recon::core {
 namespace {
 
-constexpr double converged_below = 1e-5;
-
 template <class T>
 class ChambollePock {
  public:
@@ -27,7 +25,7 @@ class ChambollePock {
         basis_dual_(memory.take<T>(coefficient_count_)),
         coefficients_(memory.take<T>(coefficient_count_)),
         scratch_(memory.take<T>(problem.psi.scratch_size())),
-        gap_(problem, problem.measure_gap, memory) {}
+        gap_(problem, true, memory) {}
 
   FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
     FrameInfo info = begin_outcome(problem_);
@@ -97,10 +95,11 @@ class ChambollePock {
     evaluate(samples_, projected_, penalty, residual_, info);
     // Relaxation may have carried them beyond their bounds.
     for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = within_lambda(basis_dual_[k]);
-    info.duality_gap = gap_.measure(samples_, projected_, basis_dual_, info.objective);
+    const double gap = gap_.measure(samples_, projected_, basis_dual_, info.objective);
+    info.duality_gap = problem_.measure_gap ? gap : -1.0;
     info.primal_residual = moved;
     info.iterations = problem_.point.iterations;
-    info.health = moved < converged_below ? Health::converged : Health::budget_used;
+    info.health = health_by_gap(gap, info.objective, moved);
   }
 
   [[nodiscard]] T within_lambda(T q) const noexcept {

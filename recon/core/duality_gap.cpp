@@ -7,6 +7,8 @@ namespace compueye::recon::core {
 namespace {
 
 constexpr double unbounded = 1e30;
+constexpr double converged_gap = 1e-3;
+constexpr double converged_step = 1e-6;
 
 template <class T>
 double largest_magnitude(const T* c, std::size_t n) noexcept {
@@ -204,6 +206,11 @@ double DualityGap<T>::measure(const FrameSamples<T>& samples, const T* x, const 
   const double gap = objective - value;
   if (gap != gap) return -1.0;
   return gap > 0.0 ? gap : 0.0;
+}
+
+Health health_by_gap(double gap, double objective, double relative_step) noexcept {
+  const bool settled = gap >= 0.0 ? gap <= converged_gap * objective : relative_step < converged_step;
+  return settled ? Health::converged : Health::budget_used;
 }
 
 template class DualityGap<float>;

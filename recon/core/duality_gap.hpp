@@ -55,6 +55,11 @@ class DualityGap {
   double u_u_ = 0.0;  // u' W^-1 u
 };
 
+/// Health of a first-order method, whose steps grow small long before the end where A is ill-conditioned: converged
+/// when the gap is at most 1e-3 of the objective, which is then several times closer to its optimum; where there is no
+/// gap (negative), when the last step was below 1e-6 of x.
+[[nodiscard]] Health health_by_gap(double gap, double objective, double relative_step) noexcept;
+
 extern template class DualityGap<float>;
 extern template class DualityGap<double>;
 

@@ -9,11 +9,6 @@
 namespace compueye::recon::core {
 namespace {
 
-/// Of the objective; the objective itself is then several times closer to its optimum.
-constexpr double converged_gap = 2e-4;
-/// Relative step, where no gap is defined.
-constexpr double converged_step = 1e-6;
-
 template <class T>
 class Fista {
  public:
@@ -93,8 +88,7 @@ class Fista {
     info.duality_gap = problem_.measure_gap ? gap : -1.0;
     info.primal_residual = step_share;
     info.iterations = problem_.point.iterations;
-    const bool settled = gap >= 0.0 ? gap <= converged_gap * info.objective : step_share < converged_step;
-    info.health = settled ? Health::converged : Health::budget_used;
+    info.health = health_by_gap(gap, info.objective, step_share);
   }
 
   const FrameProblem<T>& problem_;

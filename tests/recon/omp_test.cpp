@@ -97,7 +97,7 @@ TEST_CASE("omp takes the textbook's elements and amplitudes, with weights and in
       }
     }
   }
-  CHECK(compared == 60);
+  CHECK(compared == 70);
 }
 
 TEST_CASE("omp recovers a sparse scene exactly and stops by itself") {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
+#include "calib/plausible_response.hpp"
 #include "tests/recon/random_problem.hpp"
 
 namespace compueye::tests {
@@ -39,7 +41,17 @@ inline recon::Response without_columns(const recon::Response& a, int every) {
   return recon::Response::from_dense(a.rows(), a.cols(), values).value();
 }
 
-/// Dense, sparse, wide, tall, duplicated rows, zero rows, zero columns, badly scaled rows, nearly parallel rows.
+/// An eye of 6 x 6 ommatidia of 8 degrees as a calibration might find it, in front of 10 x 10 pixels.
+inline recon::Response measured_eye(std::uint64_t seed) {
+  constexpr double deg = std::numbers::pi / 180.0;
+  hal::EyeGeometry eye;
+  eye.rows = eye.columns = 6;
+  eye.interommatidial_rad = 2.0 * deg;
+  eye.acceptance_rad = 8.0 * deg;
+  return calib::plausible_response(eye, {10, 10, 8.0, 8.0, 30.0}, {}, seed).value();
+}
+
+/// Dense, sparse, wide, tall, duplicated rows, zero rows, zero columns, badly scaled rows, measured rows.
 inline std::vector<SolverProblem> solver_problems() {
   Random random(71);
   std::vector<SolverProblem> all;
@@ -54,6 +66,7 @@ inline std::vector<SolverProblem> solver_problems() {
   all.push_back({"zero rows", with_rows(base, blind, std::vector<double>(10, 1.0)), 5, 6});
   all.push_back({"zero columns", without_columns(random_response(random, 14, 30, 0.7), 4), 5, 6});
   all.push_back({"scaled rows", with_rows(base, {0, 1, 2, 3, 4, 5}, {1, 10, 0.1, 3, 0.03, 1}), 5, 6});
+  all.push_back({"measured rows", measured_eye(1), 10, 10});
   return all;
 }
 
