@@ -53,7 +53,7 @@ class ParityGram {
 
   void find_orbits();
   void find_blocks();
-  void fill_row(int orbit, const std::vector<double>& row);
+  void fill_row(int p, const std::vector<double>& row);  // of the first row of orbit p
 
   GramMatrix gram_;
   MirrorSymmetry symmetry_;
