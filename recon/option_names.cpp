@@ -59,4 +59,18 @@ std::string_view name(ConstraintKind kind) noexcept {
   return name_in(constraint_names(), kind);
 }
 
+std::string_view name(OperatorKind kind) noexcept {
+  switch (kind) {
+    case OperatorKind::dense:
+      return "dense";
+    case OperatorKind::csr:
+      return "csr";
+    case OperatorKind::running_sums:
+      return "running sums";
+    case OperatorKind::running_sums_symmetric:
+      return "running sums, four rows at once";
+  }
+  return "unknown";
+}
+
 }  // namespace compueye::recon

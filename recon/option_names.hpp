@@ -22,5 +22,6 @@ struct Named {
 [[nodiscard]] std::string_view name(SolverKind kind) noexcept;
 [[nodiscard]] std::string_view name(BasisKind kind) noexcept;
 [[nodiscard]] std::string_view name(ConstraintKind kind) noexcept;
+[[nodiscard]] std::string_view name(OperatorKind kind) noexcept;
 
 }  // namespace compueye::recon

@@ -1,13 +1,17 @@
 #include "recon/problem_tables.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "recon/atom_norms.hpp"
 #include "recon/dct_tables.hpp"
 #include "recon/fourier_tables.hpp"
+#include "recon/mirror_symmetry.hpp"
 #include "recon/singular_modes.hpp"
 #include "recon/smoothing.hpp"
 #include "recon/step_sizes.hpp"
@@ -15,8 +19,22 @@
 namespace compueye::recon {
 namespace {
 
-/// Dense rows are read several times faster per entry than sparse ones; below this share sparse wins.
-constexpr double dense_above = 0.15;
+/// What one application takes, in loads of a sparse entry: dense rows are read seven times as fast an entry, a tap of a
+/// running sum, or of four at once, takes about as long as a sparse entry, and the sums themselves a load a pixel.
+constexpr double dense_entry_cost = 0.15;
+
+/// The mirror images that running sums can use at once, when running sums are the quickest form; else nothing.
+std::optional<MirrorSymmetry> images_for_running_sums(const Response& seeing, int image_rows, int image_cols) {
+  const double entries = static_cast<double>(seeing.rows()) * static_cast<double>(seeing.cols());
+  const double others = std::min(dense_entry_cost * entries, static_cast<double>(seeing.nonzeros()));
+  const auto taps = static_cast<double>(running_sum_taps(seeing, image_rows, image_cols));
+  const auto pixels = static_cast<double>(seeing.cols());
+  if (taps / 4.0 + pixels >= others) return std::nullopt;
+  MirrorSymmetry symmetry = find_mirror_symmetry(seeing, image_rows, image_cols);
+  const bool four = symmetry.order() == 4 && image_rows % 2 == 0 && image_cols % 2 == 0;
+  if (!four && taps + pixels >= others) return std::nullopt;
+  return symmetry;
+}
 
 /// What only double can tell from nought would be a subnormal number in every product.
 template <class T>
@@ -72,14 +90,22 @@ void fill_numbers(const Objective& objective, const Plan& plan, core::FrameProbl
 }  // namespace
 
 template <class T>
-hal::Result<void> fill_operator(const Response& seeing, OwnedTables<T>& tables) {
-  const auto rows = static_cast<std::size_t>(seeing.rows()), cols = static_cast<std::size_t>(seeing.cols());
-  const std::int64_t nonzeros = seeing.nonzeros();
-  const double density = static_cast<double>(nonzeros) / (static_cast<double>(rows) * static_cast<double>(cols));
+hal::Result<void> fill_operator(const Response& seeing, int image_rows, int image_cols, OwnedTables<T>& tables) {
   core::LinearOperator<T>& a = tables.problem.a;
-  a.rows = rows;
-  a.cols = cols;
-  a.kind = density > dense_above ? OperatorKind::dense : OperatorKind::csr;
+  a.rows = static_cast<std::size_t>(seeing.rows());
+  a.cols = static_cast<std::size_t>(seeing.cols());
+  const std::int64_t nonzeros = seeing.nonzeros();
+  if (const auto images = images_for_running_sums(seeing, image_rows, image_cols)) {
+    auto sums = running_sum_tables<T>(seeing, image_rows, image_cols, *images);
+    if (sums) {
+      tables.sums = std::move(*sums);
+      a.kind = tables.sums.view.symmetric ? OperatorKind::running_sums_symmetric : OperatorKind::running_sums;
+      a.sums = tables.sums.view;
+      return {};
+    }
+  }
+  const double dense_cost = dense_entry_cost * static_cast<double>(a.rows) * static_cast<double>(a.cols);
+  a.kind = dense_cost < static_cast<double>(nonzeros) ? OperatorKind::dense : OperatorKind::csr;
   constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();  // row starts are 32 bits wide
   if (a.kind == OperatorKind::csr && nonzeros > most) {
     return hal::fail(hal::ErrorCode::unsupported, "response",
@@ -160,8 +186,8 @@ template hal::Result<void> fill_modes(const Response&, const Objective&, const P
                                       OwnedTables<float>&);
 template hal::Result<void> fill_modes(const Response&, const Objective&, const Plan&, const Progress&,
                                       OwnedTables<double>&);
-template hal::Result<void> fill_operator(const Response&, OwnedTables<float>&);
-template hal::Result<void> fill_operator(const Response&, OwnedTables<double>&);
+template hal::Result<void> fill_operator(const Response&, int, int, OwnedTables<float>&);
+template hal::Result<void> fill_operator(const Response&, int, int, OwnedTables<double>&);
 template void fill_basis(BasisKind, int, int, OwnedTables<float>&);
 template void fill_basis(BasisKind, int, int, OwnedTables<double>&);
 template void fill_choice(const Response&, const Objective&, const Plan&, OwnedTables<float>&);

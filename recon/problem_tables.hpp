@@ -7,6 +7,7 @@
 #include "hal/result.hpp"
 #include "recon/core/frame_problem.hpp"
 #include "recon/reconstructor.hpp"
+#include "recon/running_sum_tables.hpp"
 
 namespace compueye::recon {
 
@@ -16,6 +17,7 @@ struct OwnedTables {
   std::vector<T> values;
   std::vector<std::uint32_t> row_start;
   std::vector<std::int32_t> columns;
+  RunningSumTables<T> sums;
   std::vector<T> row_table;  // of the basis, or of the metric's DCT
   std::vector<T> col_table;
   std::vector<T> metric;
@@ -31,13 +33,15 @@ struct OwnedTables {
     return (values.size() + row_table.size() + col_table.size() + metric.size() + inverse.size() + primal_steps.size() +
             dual_steps.size() + atom_norms.size() + modes.size() + mode_weights.size()) *
                sizeof(T) +
-           (row_start.size() + columns.size()) * sizeof(std::uint32_t);
+           (row_start.size() + columns.size()) * sizeof(std::uint32_t) + sums.bytes();
   }
 };
 
-/// A of the seeing rows, dense or sparse. Error unsupported: more entries than 32-bit row starts can number.
+/// A of the seeing rows in the form that is quickest to apply: as running sums where rows are convex, else dense or
+/// sparse. Error unsupported: more entries than 32-bit row starts can number.
 template <class T>
-[[nodiscard]] hal::Result<void> fill_operator(const Response& seeing, OwnedTables<T>& tables);
+[[nodiscard]] hal::Result<void> fill_operator(const Response& seeing, int image_rows, int image_cols,
+                                              OwnedTables<T>& tables);
 
 /// Psi and the metric that goes with it.
 template <class T>

@@ -92,7 +92,7 @@ struct Reconstructor::Tables {
   hal::Result<void> fill(const Response& response, std::optional<Factor> stored, const Progress& progress) {
     OwnedTables<T>& tables = by_precision.template emplace<OwnedTables<T>>();
     const Response sees = response.select_rows(seeing);
-    if (auto filled = fill_operator(sees, tables); !filled) return filled;
+    if (auto filled = fill_operator(sees, image_rows, image_cols, tables); !filled) return filled;
     fill_basis(objective.basis, image_rows, image_cols, tables);
     tables.problem.image_rows = static_cast<std::size_t>(image_rows);
     tables.problem.image_cols = static_cast<std::size_t>(image_cols);

@@ -62,7 +62,7 @@ class Adm {
     T* weighted = step_.row_scratch();
     for (std::size_t i = 0; i < problem_.a.rows; ++i) weighted[i] = samples.weights()[i] * samples.values()[i];
     for (std::size_t k = 0; k < n_; ++k) point_[k] = T(0);
-    adjoint_accumulate(problem_.a, weighted, point_);
+    samples.adjoint_accumulate(weighted, point_);
     analyse(problem_.psi, point_, coefficients_, scratch_);
     double largest = 0.0;
     for (std::size_t k = 0; k < n_; ++k) {

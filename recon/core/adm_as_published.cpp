@@ -48,7 +48,7 @@ class PublishedAdm {
   /// out = W^(1/2) A Psi' in
   void apply(const T* in, T* out) noexcept {
     synthesise(problem_.psi, in, picture_, scratch_);
-    forward(problem_.a, picture_, out);
+    samples_.forward(picture_, out);
     for (std::size_t i = 0; i < rows_; ++i) out[i] *= root_weight(i);
   }
 
@@ -56,7 +56,7 @@ class PublishedAdm {
   void apply_adjoint(const T* in, T* out) noexcept {
     for (std::size_t i = 0; i < rows_; ++i) row_scratch_[i] = in[i] * root_weight(i);
     for (std::size_t k = 0; k < n_; ++k) picture_[k] = T(0);
-    adjoint_accumulate(problem_.a, row_scratch_, picture_);
+    samples_.adjoint_accumulate(row_scratch_, picture_);
     analyse(problem_.psi, picture_, out, scratch_);
   }
 

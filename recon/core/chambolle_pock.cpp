@@ -69,7 +69,7 @@ class ChambollePock {
   /// p = projection(x - t (A'u + Psi'q)), ahead = 2 p - x, x += relaxation (p - x); returns ||p - x|| / ||p||.
   double descend() noexcept {
     synthesise(problem_.psi, basis_dual_, projected_, scratch_);
-    adjoint_accumulate(problem_.a, row_dual_, projected_);
+    samples_.adjoint_accumulate(row_dual_, projected_);
     const T lo = problem_.constrained && problem_.lo > T(-1e30) ? problem_.lo : T(-1e30);
     const T hi = problem_.constrained && problem_.hi < T(1e30) ? problem_.hi : T(1e30);
     for (std::size_t k = 0; k < n_; ++k) {

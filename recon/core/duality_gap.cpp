@@ -57,9 +57,9 @@ void DualityGap<T>::take_sizes(const FrameSamples<T>& samples) noexcept {
 }
 
 template <class T>
-void DualityGap<T>::back_project() noexcept {
+void DualityGap<T>::back_project(const FrameSamples<T>& samples) noexcept {
   for (std::size_t k = 0; k < n_; ++k) back_[k] = T(0);
-  adjoint_accumulate(problem_.a, u_, back_);
+  samples.adjoint_accumulate(u_, back_);
 }
 
 /// excess = A'u - Psi'q
@@ -74,7 +74,7 @@ void DualityGap<T>::pull_by_basis(const T* dual) noexcept {
 template <class T>
 void DualityGap<T>::balance_mean(const FrameSamples<T>& samples) noexcept {
   for (std::size_t k = 0; k < n_; ++k) coefficients_[k] = T(1);
-  forward(problem_.a, coefficients_, white_);
+  samples.forward(coefficients_, white_);
   double mean = 0.0, squares = 0.0;
   for (std::size_t k = 0; one_sided_ && k < n_; ++k) mean += excess_[k] < T(0) ? -static_cast<double>(excess_[k]) : 0.0;
   for (std::size_t i = 0; i < problem_.a.rows; ++i) {
@@ -99,7 +99,7 @@ double DualityGap<T>::largest_tv_coefficient(const FrameSamples<T>& samples, con
     const T taken = one_sided_ && excess_[k] < T(0) ? -excess_[k] : T(0);
     excess_[k] = taken - coefficients_[k];
   }
-  back_project();
+  back_project(samples);
   for (std::size_t k = 0; k < n_; ++k) excess_[k] += back_[k];
   dct_forward(problem_.metric.dct, excess_, coefficients_, scratch_);
   coefficients_[0] = T(0);
@@ -191,7 +191,7 @@ template <class T>
 double DualityGap<T>::measure(const FrameSamples<T>& samples, const T* x, const T* dual, double objective) noexcept {
   if (!wanted_) return -1.0;
   take_residual(samples, x);
-  back_project();
+  back_project(samples);
   take_sizes(samples);
   const double of_box = boxed_ ? box_dual_value(dual) : 0.0;
   double value = of_box > 0.0 ? of_box : 0.0;  // no objective is below nought

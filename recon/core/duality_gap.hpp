@@ -31,7 +31,7 @@ class DualityGap {
  private:
   void take_residual(const FrameSamples<T>& samples, const T* x) noexcept;
   void take_sizes(const FrameSamples<T>& samples) noexcept;
-  void back_project() noexcept;
+  void back_project(const FrameSamples<T>& samples) noexcept;
   void pull_by_basis(const T* dual) noexcept;
   void balance_mean(const FrameSamples<T>& samples) noexcept;
   [[nodiscard]] double largest_coefficient(const FrameSamples<T>& samples, const T* dual) noexcept;

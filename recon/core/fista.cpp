@@ -48,7 +48,7 @@ class Fista {
     samples_.residual(picture_, residual_);
     for (std::size_t i = 0; i < problem_.a.rows; ++i) residual_[i] *= samples_.weights()[i];
     for (std::size_t k = 0; k < n_; ++k) picture_[k] = T(0);
-    adjoint_accumulate(problem_.a, residual_, picture_);
+    samples_.adjoint_accumulate(residual_, picture_);
     analyse(problem_.psi, picture_, gradient_, scratch_);
     const bool pixels = problem_.psi.kind == BasisKind::identity && problem_.constrained;
     const T lo = pixels && problem_.lo > T(-1e30) ? problem_.lo : T(-1e30);

@@ -4,7 +4,7 @@
 
 namespace compueye::recon {
 
-enum class OperatorKind : std::uint8_t { dense, csr };
+enum class OperatorKind : std::uint8_t { dense, csr, running_sums, running_sums_symmetric };
 enum class BasisKind : std::uint8_t { identity, dct, haar, db4, dft, tv };
 enum class SolverKind : std::uint8_t { admm, tikhonov, fista, chambolle_pock, adm, adm_as_published, omp, tsvd };
 enum class Precision : std::uint8_t { f32, f64 };

@@ -106,7 +106,7 @@ class Omp {
   /// back_ = A' row, coefficients_ = Psi A' row
   void correlate(const T* row) noexcept {
     for (std::size_t k = 0; k < n_; ++k) back_[k] = T(0);
-    adjoint_accumulate(problem_.a, row, back_);
+    samples_.adjoint_accumulate(row, back_);
     analyse(problem_.psi, back_, coefficients_, scratch_);
   }
 
@@ -176,7 +176,7 @@ class Omp {
   bool take(std::size_t element) noexcept {
     for (std::size_t k = 0; k < n_; ++k) back_[k] = k == element ? T(1) : T(0);
     synthesise(problem_.psi, back_, picture_, scratch_);
-    forward(problem_.a, picture_, residual_);
+    samples_.forward(picture_, residual_);
     double* atom = taken_.next();
     double correlation = 0.0;
     for (std::size_t i = 0; i < rows_; ++i) {

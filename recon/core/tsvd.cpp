@@ -36,7 +36,7 @@ class Tsvd {
     for (std::size_t r = 0; r < problem_.modes.rank; ++r) modes_[r] *= problem_.modes.inverse_squares[r];
     for (std::size_t i = 0; i < rows_; ++i) filled_[i] = dot(row(i), modes_, problem_.modes.rank);
     for (std::size_t k = 0; k < n_; ++k) picture_[k] = T(0);
-    adjoint_accumulate(problem_.a, filled_, picture_);
+    samples_.adjoint_accumulate(filled_, picture_);
     flush_tiny(picture_, n_);
     evaluate(samples_, picture_, 0.0, filled_, info);
     info.iterations = 1;

@@ -67,10 +67,10 @@ void WeightedStep<T>::apply(T* v, const T* shift) noexcept {
   }
   flush_tiny(correction_, rows);
   if (problem_->metric.is_identity()) {
-    adjoint_accumulate(problem_->a, correction_, v);
+    samples_.adjoint_accumulate(correction_, v);
   } else {
     for (std::size_t k = 0; k < problem_->pixels(); ++k) smooth_[k] = T(0);
-    adjoint_accumulate(problem_->a, correction_, smooth_);
+    samples_.adjoint_accumulate(correction_, smooth_);
     apply_inverse(problem_->metric, smooth_, coefficients_, scratch_);
     for (std::size_t k = 0; k < problem_->pixels(); ++k) v[k] += smooth_[k];
   }

@@ -14,9 +14,6 @@
 namespace compueye::firmware {
 namespace {
 
-std::string_view name_of(recon::OperatorKind kind) {
-  return kind == recon::OperatorKind::dense ? "dense" : "csr";
-}
 std::string_view name_of(recon::Precision precision) {
   return precision == recon::Precision::f64 ? "f64" : "f32";
 }
@@ -116,7 +113,7 @@ Json outputs_json(const ReconstructReport& r) {
 }
 
 Json point_json(const recon::OperatingPoint& point) {
-  return {{"operator", name_of(point.op)},
+  return {{"operator", name(point.op)},
           {"basis", name(point.basis)},
           {"solver", name(point.solver)},
           {"precision", name_of(point.precision)},
@@ -160,7 +157,7 @@ std::string report_text(const ReconstructReport& r) {
   Table table({{"figure", Align::left}, {"value", Align::left}});
   table.add({"operating point",
              fmt::format("{}, {} basis, {} operator, {}, {} iterations", name(r.point.solver), name(r.point.basis),
-                         name_of(r.point.op), name_of(r.point.precision), r.point.iterations)});
+                         name(r.point.op), name_of(r.point.precision), r.point.iterations)});
   table.add({"constraint", constraint_text(r.objective)});
   table.add({distance_name(r), distance_text(r)});
   if (recon::uses_factor(r.point.solver)) table.add({"rho", significant(r.plan.rho, 4)});
