@@ -152,6 +152,9 @@ void fill_choice(const Response& seeing, const Objective& objective, const Plan&
   const auto values = seeing.values();
   const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
   problem.column_norm = static_cast<T>(std::sqrt(squares / seeing.cols()));
+  const double magnitudes =
+      std::accumulate(values.begin(), values.end(), 0.0, [](double sum, double v) { return sum + std::abs(v); });
+  problem.mean_row_sum = static_cast<T>(magnitudes / seeing.rows());
   if (plan.solver == SolverKind::omp) {
     const std::vector<double> norms =
         atom_norms(seeing, static_cast<int>(problem.image_rows), static_cast<int>(problem.image_cols), objective.basis);

@@ -46,6 +46,7 @@ struct FrameProblem {
   T basis_step = T(0);              ///< for cp
   bool bounded = false;             ///< adm: min ||Psi x||_1 subject to ||W^(1/2)(A x - y)|| <= epsilon instead
   T epsilon = T(0);
+  T mean_row_sum = T(1);          ///< of the magnitudes of A's entries
   T column_norm = T(1);           ///< root mean square norm of A's columns
   const T* atom_norms = nullptr;  ///< a.cols norms ||A psi_j||, for omp
   SingularModes<T> modes;         ///< for tsvd
