@@ -172,7 +172,7 @@ hal::Result<Reconstructor> Reconstructor::create(const Response& response, int i
   const auto values = response.values();
   const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
   if (auto ok = check_scale(squares, response.cols()); !ok) return tl::unexpected(ok.error());
-  tables->plan.rho = resolve_rho(response, objective, plan);
+  tables->plan.rho = resolve_rho(response, image_rows, image_cols, objective, plan);
   if (auto ok = check_in_precision(squares, objective, tables->plan); !ok) return tl::unexpected(ok.error());
   const int most = static_cast<int>(tables->seeing.size());
   const int by_rule = (most + 9) / 10;

@@ -17,8 +17,7 @@ void add_inspect_command(CLI::App& app, Action& chosen) {
       ->type_name("FILE");
   command
       ->add_option("--size", options->size,
-                   "rows and columns of the picture behind a response: adds mirror symmetry, the DCT's atom norm and "
-                   "the memory of admm")
+                   "rows and columns of the picture behind a response: adds mirror symmetry and the memory of admm")
       ->type_name("HxW")
       ->check(text_where([](const std::string& text) {
         return picture_size_from(text) ? std::string() : "is '" + text + "', expected rows and columns such as 16x16";

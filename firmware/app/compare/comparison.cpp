@@ -77,8 +77,7 @@ class Runner {
     recon::Objective objective{contender.basis, contender.constraint, board_.reconstruction.box_lo,
                                board_.reconstruction.box_hi, options_.lambda.value_or(0.0)};
     if (!options_.lambda) {
-      const auto lambda = recon::lambda_by_rule(samples_.response, board_.object.rows, board_.object.cols,
-                                                contender.solver, contender.basis, samples_.sigma);
+      const auto lambda = recon::lambda_by_rule(samples_.response, contender.solver, contender.basis, samples_.sigma);
       if (!lambda) return tl::unexpected(lambda.error());
       objective.lambda = *lambda;
     }
@@ -89,7 +88,7 @@ class Runner {
       return recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, std::nullopt, progress_);
     }
     const recon::MetricKind metric = recon::metric_of(contender.basis);
-    const double rho = recon::resolve_rho(samples_.response, objective, plan);
+    const double rho = recon::resolve_rho(samples_.response, rows, cols, objective, plan);
     if (factor_ && factor_->metric == metric && factor_->rho == rho) {
       return recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, factor_, progress_);
     }

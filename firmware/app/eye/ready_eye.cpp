@@ -6,7 +6,6 @@
 
 #include "calib/nominal.hpp"
 #include "firmware/app/board/dead_ommatidia.hpp"
-#include "firmware/app/eye/kept_atom_norm.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/penalty_rule.hpp"
 
@@ -19,14 +18,13 @@ std::vector<std::uint8_t> seeing_flags(const recon::Response& response) {
   return sees;
 }
 
-hal::Result<LambdaChoice> choose_lambda(const Board& board, const EyeRequest& request, const recon::Response& response,
-                                        std::uint64_t response_hash) {
+hal::Result<LambdaChoice> choose_lambda(const Board& board, const EyeRequest& request,
+                                        const recon::Response& response) {
   const ReconstructionSettings& settings = board.reconstruction;
   if (request.lambda) return LambdaChoice{*request.lambda, false, 0.0};
   if (settings.lambda && !request.sigma) return LambdaChoice{*settings.lambda, false, 0.0};
   const double sigma = request.sigma.value_or(board.noise_sigma());
-  const double norm = kept_atom_norm(request.cache, response, response_hash, board.object, settings.basis);
-  return recon::lambda_by_rule(norm, settings.solver, settings.basis, sigma).map([&](double lambda) {
+  return recon::lambda_by_rule(response, settings.solver, settings.basis, sigma).map([&](double lambda) {
     return LambdaChoice{lambda, true, sigma};
   });
 }
@@ -68,8 +66,7 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const EyeRequest& reque
   if (progress && !progress("lambda by rule", 0.0, 0.0)) {
     return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");
   }
-  const std::uint64_t hash = a.content_hash();
-  auto lambda = choose_lambda(board, request, a, hash);
+  auto lambda = choose_lambda(board, request, a);
   if (!lambda) return tl::unexpected(std::move(lambda.error()));
   eye.lambda_ = *lambda;
 
@@ -78,7 +75,8 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const EyeRequest& reque
   const auto order = static_cast<int>(a.seeing_rows().size());
   const bool cached = recon::uses_factor(plan.solver);
   KeptFactor factor(cached ? request.cache : std::filesystem::path{},
-                    {hash, recon::resolve_rho(a, objective, plan), order, recon::metric_of(objective.basis)});
+                    {a.content_hash(), recon::resolve_rho(a, board.object.rows, board.object.cols, objective, plan),
+                     order, recon::metric_of(objective.basis)});
   auto made =
       recon::Reconstructor::create(a, board.object.rows, board.object.cols, objective, plan, factor.take(), progress);
   if (!made) return tl::unexpected(std::move(made.error()));

@@ -95,14 +95,14 @@ void add_solver(const Board& board, FigureList& figures) {
 
 Result<double> add_rules(const Board& board, const recon::Response& a, FigureList& figures) {
   const ReconstructionSettings& r = board.reconstruction;
-  const auto by_rule =
-      recon::lambda_by_rule(a, board.object.rows, board.object.cols, r.solver, r.basis, board.noise_sigma());
+  const auto by_rule = recon::lambda_by_rule(a, r.solver, r.basis, board.noise_sigma());
   if (!by_rule) return by_rule;
   const double lambda = r.lambda.value_or(*by_rule);
   recon::Plan plan;
   plan.solver = r.solver;
   plan.rho = r.rho.value_or(0.0);
-  const double rho = recon::resolve_rho(a, {r.basis, r.constraint, r.box_lo, r.box_hi, lambda}, plan);
+  const double rho = recon::resolve_rho(a, board.object.rows, board.object.cols,
+                                        {r.basis, r.constraint, r.box_lo, r.box_hi, lambda}, plan);
   figures.add("lambda_by_rule", "lambda by rule", significant(*by_rule, 5), *by_rule);
   figures.add("lambda", "lambda in use", significant(lambda, 5) + (r.lambda ? " (the board's)" : " (by rule)"), lambda);
   figures.add("rho", "rho in use", significant(rho, 5) + (r.rho ? " (the board's)" : " (by rule)"), rho);

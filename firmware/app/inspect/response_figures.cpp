@@ -81,7 +81,8 @@ Result<void> add_memory(const Response& a, PictureSize size, FigureList& figures
   if (seeing == 0 || packed * sizeof(float) > most_factor_bytes) return {};
   const recon::Objective objective;
   recon::Plan plan;
-  recon::Factor factor{recon::resolve_rho(a, objective, plan), static_cast<int>(seeing), std::vector<float>(packed)};
+  recon::Factor factor{recon::resolve_rho(a, size.rows, size.cols, objective, plan), static_cast<int>(seeing),
+                       std::vector<float>(packed)};
   const auto made = recon::Reconstructor::create(a, size.rows, size.cols, objective, plan, std::move(factor));
   if (!made) return tl::unexpected(made.error());
   figures.add("rho_by_rule", "rho by rule", significant(made->plan().rho, 4), made->plan().rho);
@@ -93,13 +94,11 @@ Result<void> add_memory(const Response& a, PictureSize size, FigureList& figures
   return {};
 }
 
-void add_atom_norms(const Response& a, std::optional<PictureSize> size, FigureList& figures) {
-  // The pixel basis does not look at the shape of the picture.
-  const double pixel = recon::median_atom_norm(a, 1, a.cols(), recon::BasisKind::identity);
-  figures.add("median_atom_norm_identity", "median atom norm, identity", significant(pixel, 6), pixel);
-  if (!size) return;
-  const double dct = recon::median_atom_norm(a, size->rows, size->cols, recon::BasisKind::dct);
-  figures.add("median_atom_norm_dct", "median atom norm, dct", significant(dct, 6), dct);
+void add_lambda_scales(const Response& a, FigureList& figures) {
+  const double norm = recon::lambda_scale(a, recon::BasisKind::identity);
+  figures.add("median_column_norm", "median column norm", significant(norm, 6), norm);
+  const double overlap = recon::lambda_scale(a, recon::BasisKind::dct);
+  figures.add("mean_overlap", "mean column sum", significant(overlap, 6), overlap);
 }
 
 }  // namespace
@@ -116,13 +115,13 @@ Result<void> add_response_figures(const Response& a, std::optional<PictureSize> 
   add_support(summary, count_duplicate_rows(a), figures);
   if (a.stored_entries() > 0) add_ranges(a, figures);
   const SingularValue largest = largest_singular_value(a, progress);
-  if (progress && !progress("atom norms", 0.0, 0.0)) {
+  if (progress && !progress("norms", 0.0, 0.0)) {
     return fail(ErrorCode::interrupted, "inspect", "was stopped before it was complete");
   }
   figures.add("largest_singular_value", "largest singular value",
               significant(largest.value, 8) + (largest.settled ? "" : " (a lower bound: not settled)"), largest.value);
   figures.add("largest_singular_value_settled", "", "", largest.settled);
-  add_atom_norms(a, size, figures);
+  add_lambda_scales(a, figures);
   if (!size || summary.seeing_rows() == 0) return {};
   add_symmetry(a, *size, figures);
   return add_memory(a, *size, figures);

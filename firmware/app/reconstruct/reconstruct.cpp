@@ -99,8 +99,7 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatemen
   problem.objective.lambda = o.lambda.value_or(0.0);
   problem.plan.max_reweighted = inputs.frames.max_reweighted;
   if (o.sigma) {
-    const auto lambda = recon::lambda_by_rule(a, problem.size.rows, problem.size.cols, problem.plan.solver,
-                                              problem.objective.basis, *o.sigma);
+    const auto lambda = recon::lambda_by_rule(a, problem.plan.solver, problem.objective.basis, *o.sigma);
     if (!lambda) return tl::unexpected(lambda.error());
     problem.objective.lambda = *lambda;
   }

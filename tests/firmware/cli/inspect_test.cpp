@@ -24,8 +24,8 @@ TEST_CASE("inspect counts what is wrong with a response") {
   CHECK(json["row_sums"] == nlohmann::json({-4.0, 3.0}));
   // The repeated row gives sqrt(3^2 + 3^2), above the 4 of the other.
   CHECK(json["largest_singular_value"].get<double>() == doctest::Approx(std::sqrt(18.0)));
-  CHECK(json["median_atom_norm_identity"].get<double>() == doctest::Approx(4.0).epsilon(1.0));
-  CHECK(json["median_atom_norm_dct"].get<double>() > 0.0);
+  CHECK(json["median_column_norm"].get<double>() == doctest::Approx(4.0));
+  CHECK(json["mean_overlap"].get<double>() == doctest::Approx((3.0 + 4.0 + 3.0) / 4.0));
   CHECK(json["mirror_symmetry"] == 1);
   CHECK(json["admm_memory"]["factor"] == 3 * 4 / 2 * sizeof(float));
 }
