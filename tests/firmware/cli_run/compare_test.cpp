@@ -1,0 +1,181 @@
+#include <doctest/doctest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "firmware/files/png.hpp"
+#include "recon/option_names.hpp"
+#include "recon/solver_table.hpp"
+#include "tests/firmware/cli_run/copied_board.hpp"
+
+using namespace compueye;
+using namespace compueye::test;
+using Json = nlohmann::json;
+
+namespace {
+
+std::vector<std::string> compare_arguments(const CopiedBoard& board, std::vector<std::string> more) {
+  more.insert(more.begin(), {"compare", "--board", board.path().string()});
+  return more;
+}
+
+Json compare_json(const CopiedBoard& board, std::vector<std::string> more) {
+  more.emplace_back("--json");
+  const Ended ended = compueye::test::compueye(compare_arguments(board, std::move(more)));
+  REQUIRE_MESSAGE(ended.exit_code == 0, ended.err);
+  auto json = Json::parse(ended.out, nullptr, false);
+  REQUIRE_FALSE(json.is_discarded());
+  return json;
+}
+
+Json row_of(const Json& json, const std::string& solver, const std::string& basis) {
+  for (const Json& row : json["compared"]) {
+    if (row["solver"] == solver && row["basis"] == basis) return row;
+  }
+  return {};
+}
+
+void check_refused(const CopiedBoard& board, std::vector<std::string> more, int exit_code,
+                   const std::vector<std::string>& fragments) {
+  const Ended ended = compueye::test::compueye(compare_arguments(board, std::move(more)));
+  CAPTURE(ended.err);
+  CHECK(ended.exit_code == exit_code);
+  CHECK(ended.out.empty());
+  for (const std::string& fragment : fragments) CHECK(contains(ended.err, fragment));
+}
+
+}  // namespace
+
+TEST_CASE("compare solves the frame in every way that goes together, and only those") {
+  const CopiedBoard board;
+  const Json json = compare_json(board, {"--iterations", "40"});
+  std::set<std::pair<std::string, std::string>> expected, found;
+  for (const auto& basis : recon::basis_names()) {
+    for (const auto& solver : recon::solver_names()) {
+      if (recon::supports(solver.kind, basis.kind, recon::ConstraintKind::box) ||
+          recon::supports(solver.kind, basis.kind, recon::ConstraintKind::none)) {
+        expected.emplace(solver.name, basis.name);
+      }
+    }
+  }
+  for (const Json& row : json["compared"]) {
+    found.emplace(row["solver"].get<std::string>(), row["basis"].get<std::string>());
+    CHECK(row["nmse"].get<double>() >= 0.0);
+    CHECK(row["solve_ms"].get<double>() > 0.0);
+    const bool boxed = row["constraint"] == "box";
+    CHECK((boxed || row["constraint"] == "none"));
+    if (row["solver"] == "admm" || row["solver"] == "cp") CHECK(boxed);
+  }
+  CHECK(found == expected);
+  CHECK(json["complete"] == true);
+  CHECK(json["conventional"]["nmse"].get<double>() > 0.3);
+}
+
+TEST_CASE("solvers of one problem agree in objective, and the gap bounds what is left") {
+  const CopiedBoard board;
+  const Json json = compare_json(board, {"--solvers", "admm,cp,fista", "--bases", "identity", "--iterations", "3000",
+                                         "--scene", "dots", "--exact"});
+  REQUIRE(json["compared"].size() == 3);
+  CHECK(json["samples"] == "exact");
+  bool has_least = false;
+  for (const Json& row : json["compared"]) {
+    CHECK(row["excess"].get<double>() < 1e-3);
+    has_least = has_least || row["excess"] == 0.0;
+    CHECK(row["duality_gap"].get<double>() < 0.1 * row["objective"].get<double>());
+    CHECK(row["nmse"].get<double>() < 1e-3);
+    CHECK(row["iterations"] == 3000);
+  }
+  CHECK(has_least);
+}
+
+TEST_CASE("iterations, rank and lambda are the board's, by rule or by hand") {
+  const CopiedBoard board;
+  const Json by_rule = compare_json(board, {"--bases", "identity", "--sigma", "0.5"});
+  CHECK(row_of(by_rule, "admm", "identity")["iterations"] == 200);
+  CHECK(row_of(by_rule, "cp", "identity")["iterations"] == 2000);
+  CHECK(row_of(by_rule, "tikhonov", "identity")["iterations"] == 1);
+  const int rank = row_of(by_rule, "tsvd", "identity")["rank"].get<int>();
+  CHECK(rank > 5);
+  CHECK(rank < 64);
+  CHECK(row_of(by_rule, "omp", "identity")["excess"].is_null());
+  CHECK(row_of(by_rule, "tsvd", "identity")["duality_gap"].is_null());
+  const Json by_hand = compare_json(board, {"--solvers", "admm", "--lambda", "0.125"});
+  for (const Json& row : by_hand["compared"]) CHECK(row["lambda"] == 0.125);
+}
+
+TEST_CASE("factors are made once a metric and kept for the next time") {
+  const CopiedBoard board;
+  const Json first = compare_json(board, {"--solvers", "admm,adm", "--iterations", "5"});
+  CHECK(board.factors().size() == 2);  // total variation has a metric of its own
+  const auto before = std::filesystem::last_write_time(board.factors().front());
+  const Json second = compare_json(board, {"--solvers", "admm,adm", "--iterations", "5"});
+  CHECK(std::filesystem::last_write_time(board.factors().front()) == before);
+  for (std::size_t r = 0; r < first["compared"].size(); ++r) {
+    CHECK(first["compared"][r]["nmse"] == second["compared"][r]["nmse"]);
+  }
+}
+
+TEST_CASE("another response, a table, a CSV and a contact sheet") {
+  const CopiedBoard board;
+  const auto matrix = board.outside("A.npy"), sheet = board.outside("all.png"), csv = board.outside("all.csv");
+  const Ended made = compueye::test::compueye(
+      {"response", "--board", board.path().string(), "--as-measured", "4", "--out", matrix.string()});
+  REQUIRE_MESSAGE(made.exit_code == 0, made.err);
+  const Ended ended = compueye::test::compueye(
+      compare_arguments(board, {"--response", matrix.string(), "--exact", "--sheet", sheet.string(), "--csv",
+                                csv.string(), "--bases", "identity,dct", "--iterations", "50"}));
+  REQUIRE_MESSAGE(ended.exit_code == 0, ended.err);
+  CHECK(contains(ended.out, "conventional eye"));
+  CHECK(contains(ended.out, " *"));
+  CHECK(contains(ended.out, "y = A x + n"));
+  const std::string text = bytes_of(csv);
+  CHECK(lines(text) == 1 + 12);
+  CHECK(text.rfind("basis,constraint,solver,lambda,rank,nmse,", 0) == 0);
+  const auto picture = firmware::read_png(sheet);
+  REQUIRE(picture.has_value());
+  CHECK(picture->rows > 3 * 240);  // scene, conventional eye and twelve pictures, six a row
+  CHECK(picture->cols > 6 * 240);
+  CHECK(picture->cols < 7 * 270);
+}
+
+TEST_CASE("compare refuses what makes no sense before it works") {
+  const CopiedBoard board;
+  check_refused(board, {"--solvers", "amdm"}, 2, {"--solvers", "'amdm'", "did you mean 'admm'?"});
+  check_refused(board, {"--bases", "dct,wavelet"}, 2, {"--bases", "'wavelet'", "identity, dct"});
+  check_refused(board, {"--constraint", "positive"}, 2, {"--constraint", "'positive'", "nonnegative"});
+  check_refused(board, {"--solvers", "tsvd", "--bases", "tv"}, 2, {"nothing to compare"});
+  check_refused(board, {"--iterations", "0"}, 2, {"--iterations", "is 0"});
+  check_refused(board, {"--sigma", "-1"}, 2, {"--sigma", "is -1"});
+  check_refused(board, {"--sheet", board.outside("no/such/folder.png").string()}, 1, {"folder"});
+  const CopiedBoard narrow;
+  narrow.change("rows = 8", "rows = 6");
+  const auto matrix = board.outside("A.npy");
+  const Ended other =
+      compueye::test::compueye({"response", "--board", narrow.path().string(), "--out", matrix.string()});
+  REQUIRE(other.exit_code == 0);
+  check_refused(board, {"--response", matrix.string()}, 1, {"48 rows", "expected 64"});
+}
+
+TEST_CASE("Ctrl-C keeps what compare has measured") {
+  const CopiedBoard board;
+  Program program(compare_arguments(board, {"--iterations", "200000", "--json"}));
+  // A solver of so many iterations takes a moment, all of them together minutes: the stop falls among them.
+  constexpr std::chrono::milliseconds pause{1500};
+  std::this_thread::sleep_for(pause);
+  program.signal(SIGINT);
+  const Ended ended = program.wait();
+  CHECK_FALSE(ended.timed_out);
+  const Json json = Json::parse(ended.out, nullptr, false);
+  REQUIRE_FALSE(json.is_discarded());
+  if (ended.exit_code == 0) {
+    CHECK(json["complete"] == false);
+    CHECK(json["compared"].size() < json["planned"].get<std::size_t>());
+    CHECK_FALSE(json["compared"].empty());
+  } else {
+    CHECK(ended.exit_code == 1);
+    CHECK(json["error"]["code"] == "interrupted");
+  }
+}
