@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "bench/bandwidth.hpp"
 #include "bench/eyes.hpp"
 #include "bench/timing.hpp"
 #include "firmware/app/report/json_report.hpp"
@@ -169,14 +170,6 @@ hal::Result<std::vector<Part>> measure(const bench::Eye& eye) {
   return parts;
 }
 
-/// GB/s at which one core reads 256 MiB that no cache holds.
-double read_bandwidth() {
-  const std::vector<float> memory(std::size_t{64} << 20U, 1.0F);
-  volatile float sum = 0.0F;
-  const double ms = bench::median_ms([&] { sum = core::sum_of_magnitudes(memory.data(), memory.size()); }, 9);
-  return static_cast<double>(memory.size() * sizeof(float)) / ms * 1e-6;
-}
-
 double gigabytes_per_second(const Part& part) {
   return part.bytes / part.ms * 1e-6;
 }
@@ -221,7 +214,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: bench_frame [--json]\n");
     return 2;
   }
-  const double bandwidth = read_bandwidth();
+  const double bandwidth = bench::read_bandwidth();
   firmware::Json json;
   json["read_bandwidth_gigabytes_per_second"] = bandwidth;
   std::string text = fmt::format("one core reads memory at {:.2f} GB/s\n\n", bandwidth);
