@@ -111,7 +111,7 @@ TEST_CASE("lambda by risk finds a better lambda than a start that is too small, 
     const Scene scene = noisy_block(a, 1.0, seed);
     const auto found = lambda_by_risk(a, side, side, objective, plan, scene.y, 1.0);
     REQUIRE(found.has_value());
-    CHECK(found->trials.size() == 5);
+    CHECK(found->trials.size() == 6);
     CHECK(found->trials.front().lambda == 0.1);
     CHECK(found->lambda > 0.5);
     const double start = error_at(a, scene, objective, plan, 0.1);
@@ -156,7 +156,7 @@ TEST_CASE("lambda by risk keeps the start where the samples cannot tell") {
   const auto found = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.5);
   REQUIRE(found.has_value());
   CHECK(found->lambda == 0.05);
-  CHECK(found->trials.size() == 5);
+  CHECK(found->trials.size() == 6);
   const auto noise_free = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.0);
   REQUIRE(noise_free.has_value());
   CHECK(noise_free->lambda == 0.05);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -17,6 +18,7 @@
 #include "firmware/app/report/progress_reporter.hpp"
 #include "firmware/files/response_file.hpp"
 #include "hal/clock.hpp"
+#include "recon/lambda_by_risk.hpp"
 #include "recon/lambda_rule.hpp"
 
 namespace compueye::firmware {
@@ -85,6 +87,21 @@ Result<Inputs> read_inputs(const ReconstructOptions& o, PictureSize size, const 
   return inputs;
 }
 
+/// The risk is known for samples that all carry the same noise.
+Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, const ProblemStatement& problem,
+                                                const Inputs& inputs, const recon::Progress& progress) {
+  const auto weights = inputs.frames.weights_of(0);
+  if (std::any_of(weights.begin(), weights.end(), [](float w) { return w != 1.0F; })) {
+    return fail(ErrorCode::unsupported, "--lambda-from-samples",
+                "needs a first frame whose weights are the largest of every channel, expected --weights of shape (M,) "
+                "or a complete first frame");
+  }
+  auto found = recon::lambda_by_risk(*inputs.response, problem.size.rows, problem.size.cols, problem.objective,
+                                     problem.plan, inputs.frames.samples_of(0), *o.sigma, std::nullopt, progress);
+  if (!found && found.error().code != ErrorCode::interrupted) found.error().place = o.samples;
+  return found;
+}
+
 Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatement problem, const Inputs& inputs,
                                     const recon::Progress& progress) {
   const recon::Response& a = *inputs.response;
@@ -95,8 +112,15 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatemen
     if (!lambda) return tl::unexpected(lambda.error());
     problem.objective.lambda = *lambda;
   }
+  std::optional<recon::Factor> factor;
+  if (o.lambda_from_samples) {
+    auto found = lambda_from_samples(o, problem, inputs, progress);
+    if (!found) return tl::unexpected(std::move(found.error()));
+    problem.objective.lambda = found->lambda;
+    factor = std::move(found->factor);
+  }
   auto made = recon::Reconstructor::create(a, problem.size.rows, problem.size.cols, problem.objective, problem.plan,
-                                           std::nullopt, progress);
+                                           std::move(factor), progress);
   // The solver knows of lambda and response, people of the options and files behind them.
   if (!made && made.error().code != ErrorCode::interrupted) made.error().place = o.response;
   return made;

@@ -27,6 +27,7 @@ struct ReconstructOptions {
   std::optional<int> iterations;
   std::optional<double> lambda;
   std::optional<double> sigma;  ///< of a sample of weight one
+  bool lambda_from_samples = false;
   std::optional<double> rho;
   std::optional<double> relaxation;
   bool json = false;

@@ -71,7 +71,13 @@ std::string constraint_text(const recon::Objective& objective) {
 std::string lambda_text(const ReconstructReport& r) {
   const std::string value = significant(r.objective.lambda, 4);
   if (!r.options.sigma) return value + " by hand";
-  return value + " by rule from sigma " + significant(*r.options.sigma, 4);
+  return value + (r.options.lambda_from_samples ? " by risk of the first frame, sigma " : " by rule from sigma ") +
+         significant(*r.options.sigma, 4);
+}
+
+std::string lambda_origin(const ReconstructReport& r) {
+  if (!r.options.sigma) return "hand";
+  return r.options.lambda_from_samples ? "risk" : "rule";
 }
 
 std::string health_text(const ReconstructReport& r) {
@@ -100,10 +106,12 @@ Json point_json(const recon::OperatingPoint& point) {
 
 Json objective_json(const ReconstructReport& r) {
   const bool box = r.objective.constraint == recon::ConstraintKind::box;
-  return {
-      {"constraint", name(r.objective.constraint)},     {"lo", box ? Json(r.objective.lo) : Json()},
-      {"hi", box ? Json(r.objective.hi) : Json()},      {"lambda", r.objective.lambda},
-      {"lambda_by", r.options.sigma ? "rule" : "hand"}, {"sigma", r.options.sigma ? Json(*r.options.sigma) : Json()}};
+  return {{"constraint", name(r.objective.constraint)},
+          {"lo", box ? Json(r.objective.lo) : Json()},
+          {"hi", box ? Json(r.objective.hi) : Json()},
+          {"lambda", r.objective.lambda},
+          {"lambda_by", lambda_origin(r)},
+          {"sigma", r.options.sigma ? Json(*r.options.sigma) : Json()}};
 }
 
 Json frame_json(const FrameRecord& record) {
