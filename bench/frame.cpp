@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <vector>
 
 #include "bench/eyes.hpp"
@@ -16,6 +17,7 @@
 #include "recon/core/proximal.hpp"
 #include "recon/core/vector_sums.hpp"
 #include "recon/dct_tables.hpp"
+#include "recon/problem_tables.hpp"
 #include "recon/reconstructor.hpp"
 
 using namespace compueye;
@@ -34,33 +36,23 @@ struct Part {
 
 /// What core::FrameProblem points at inside a Reconstructor, once more, for its parts to be called one by one.
 struct Operator {
-  std::vector<float> values;
-  std::vector<std::uint32_t> row_start;
-  std::vector<std::int32_t> columns;
-  core::LinearOperator<float> view;
+  recon::OwnedTables<float> tables;
+  std::optional<bench::Workspace> memory;
 
-  Operator(const recon::Response& response, const std::vector<std::int32_t>& seeing, recon::OperatorKind kind) {
-    const auto n = static_cast<std::size_t>(response.cols());
-    row_start.push_back(0);
-    for (const std::int32_t m : seeing) {
-      const std::size_t begin = values.size();
-      if (kind == recon::OperatorKind::dense) values.resize(begin + n, 0.0F);
-      response.for_each_in_row(m, [&](std::int32_t column, double v) {
-        if (kind == recon::OperatorKind::dense) {
-          values[begin + static_cast<std::size_t>(column)] = static_cast<float>(v);
-        } else if (v != 0.0) {
-          values.push_back(static_cast<float>(v));
-          columns.push_back(column);
-        }
-      });
-      row_start.push_back(static_cast<std::uint32_t>(values.size()));
-    }
-    view = {kind, seeing.size(), n, values.data(), row_start.data(), columns.data()};
+  explicit Operator(const recon::Response& seeing, const bench::Eye& eye) {
+    static_cast<void>(recon::fill_operator(seeing, eye.plane.rows, eye.plane.cols, tables));
+    memory.emplace(view().scratch_size() * sizeof(float) + 64);
   }
+  [[nodiscard]] const core::LinearOperator<float>& view() const { return tables.problem.a; }
+  [[nodiscard]] float* scratch() const { return reinterpret_cast<float*>(memory->span().data()); }
 
-  [[nodiscard]] double bytes() const {
-    const bool dense = view.kind == recon::OperatorKind::dense;
-    return 4.0 * static_cast<double>(values.size() + (dense ? 0 : columns.size() + row_start.size()));
+  /// Of one application: a multiplication and an addition an entry, or a tap in each of its lanes; an addition a pixel
+  /// for the running sums.
+  [[nodiscard]] double flops() const {
+    const double lanes = view().kind == recon::OperatorKind::running_sums_symmetric ? 4.0 : 1.0;
+    const double sums = tables.sums.element.empty() ? 0.0 : static_cast<double>(view().cols);
+    return 2.0 * (static_cast<double>(tables.values.size()) + lanes * static_cast<double>(tables.sums.element.size())) +
+           sums;
   }
 };
 
@@ -77,23 +69,23 @@ double transform_flops(std::size_t length) {
   return flops;
 }
 
-Part measure_forward(const Operator& a) {
-  const auto x = some_numbers(a.view.cols);
-  std::vector<float> y(a.view.rows);
-  const double vectors = 4.0 * static_cast<double>(a.view.cols + a.view.rows);
-  return {"A forward", bench::median_ms([&] { core::forward(a.view, x.data(), y.data()); }), a.bytes() + vectors,
-          2.0 * static_cast<double>(a.values.size())};
+Part measure_forward(Operator& a) {
+  const auto x = some_numbers(a.view().cols);
+  std::vector<float> y(a.view().rows);
+  const double vectors = 4.0 * static_cast<double>(a.view().cols + a.view().rows);
+  return {"A forward", bench::median_ms([&] { core::forward(a.view(), x.data(), y.data(), a.scratch()); }),
+          static_cast<double>(a.tables.bytes()) + vectors, a.flops()};
 }
 
-Part measure_adjoint(const Operator& a) {
-  const auto y = some_numbers(a.view.rows);
-  std::vector<float> x(a.view.cols);
-  const double vectors = 4.0 * static_cast<double>(2 * a.view.cols + a.view.rows);
+Part measure_adjoint(Operator& a) {
+  const auto y = some_numbers(a.view().rows);
+  std::vector<float> x(a.view().cols);
+  const double vectors = 4.0 * static_cast<double>(2 * a.view().cols + a.view().rows);
   const auto work = [&] {
     std::fill(x.begin(), x.end(), 0.0F);  // or the sums would run away
-    core::adjoint_accumulate(a.view, y.data(), x.data());
+    core::adjoint_accumulate(a.view(), y.data(), x.data(), a.scratch());
   };
-  return {"A adjoint", bench::median_ms(work), a.bytes() + vectors, 2.0 * static_cast<double>(a.values.size())};
+  return {"A adjoint", bench::median_ms(work), static_cast<double>(a.tables.bytes()) + vectors, a.flops()};
 }
 
 Part measure_inverse(const recon::Factor& factor) {
@@ -164,9 +156,9 @@ hal::Result<std::vector<Part>> measure(const bench::Eye& eye) {
   plan.max_reweighted = 0;
   const auto solver = recon::Reconstructor::create(*response, eye.plane.rows, eye.plane.cols, objective, plan);
   if (!solver) return tl::unexpected(solver.error());
-  const Operator a(*response, response->seeing_rows(), solver->operating_point().op);
+  Operator a(response->select_rows(response->seeing_rows()), eye);
   std::vector<Part> parts{measure_forward(a), measure_adjoint(a), measure_inverse(solver->factor()),
-                          measure_dct(eye.plane.rows, eye.plane.cols), measure_proximal(a.view.cols)};
+                          measure_dct(eye.plane.rows, eye.plane.cols), measure_proximal(a.view().cols)};
   auto whole = measure_whole(*response, eye.plane.rows, eye.plane.cols, objective, solver->plan(), solver->factor());
   if (!whole) return tl::unexpected(whole.error());
   for (const Part& part : parts) {

@@ -23,7 +23,7 @@ enum class MetricKind : std::uint8_t { identity, smoothing };
 
 /// Whether a solver works with a cached factor at all.
 [[nodiscard]] constexpr bool uses_factor(SolverKind solver) noexcept {
-  return solver == SolverKind::admm || solver == SolverKind::tikhonov;
+  return solver == SolverKind::admm || solver == SolverKind::adm || solver == SolverKind::tikhonov;
 }
 
 /// The inverse that makes a frame cheap: (A K0^-1 A' + rho I)^-1 of the seeing rows, made in double, kept in float32 as

@@ -16,6 +16,7 @@ class GramMatrix {
  public:
   GramMatrix(const GramMatrix&) = delete;
   GramMatrix& operator=(const GramMatrix&) = delete;
+  ~GramMatrix() = default;
   GramMatrix(const Response& response, int image_rows, int image_cols, MetricKind metric);
 
   /// What row() works in, one a thread.

@@ -5,11 +5,14 @@
 namespace compueye::recon {
 namespace {
 
-constexpr std::array<Named<SolverKind>, 4> solvers{{
+constexpr std::array<Named<SolverKind>, 7> solvers{{
     {"admm", SolverKind::admm},
-    {"fista", SolverKind::fista},
+    {"adm", SolverKind::adm},
     {"cp", SolverKind::chambolle_pock},
+    {"fista", SolverKind::fista},
+    {"omp", SolverKind::omp},
     {"tikhonov", SolverKind::tikhonov},
+    {"tsvd", SolverKind::tsvd},
 }};
 constexpr std::array<Named<BasisKind>, 6> bases{{
     {"identity", BasisKind::identity},
@@ -46,6 +49,7 @@ std::span<const Named<ConstraintKind>> constraint_names() noexcept {
 }
 
 std::string_view name(SolverKind kind) noexcept {
+  if (kind == SolverKind::adm_as_published) return "adm as published";
   return name_in(solver_names(), kind);
 }
 std::string_view name(BasisKind kind) noexcept {
@@ -53,6 +57,20 @@ std::string_view name(BasisKind kind) noexcept {
 }
 std::string_view name(ConstraintKind kind) noexcept {
   return name_in(constraint_names(), kind);
+}
+
+std::string_view name(OperatorKind kind) noexcept {
+  switch (kind) {
+    case OperatorKind::dense:
+      return "dense";
+    case OperatorKind::csr:
+      return "csr";
+    case OperatorKind::running_sums:
+      return "running sums";
+    case OperatorKind::running_sums_symmetric:
+      return "running sums, four rows at once";
+  }
+  return "unknown";
 }
 
 }  // namespace compueye::recon

@@ -14,6 +14,7 @@ struct Named {
   Kind kind;
 };
 
+/// Without adm as published, which is no solver to choose but one to be shown beside the others.
 [[nodiscard]] std::span<const Named<SolverKind>> solver_names() noexcept;
 [[nodiscard]] std::span<const Named<BasisKind>> basis_names() noexcept;
 [[nodiscard]] std::span<const Named<ConstraintKind>> constraint_names() noexcept;
@@ -21,5 +22,6 @@ struct Named {
 [[nodiscard]] std::string_view name(SolverKind kind) noexcept;
 [[nodiscard]] std::string_view name(BasisKind kind) noexcept;
 [[nodiscard]] std::string_view name(ConstraintKind kind) noexcept;
+[[nodiscard]] std::string_view name(OperatorKind kind) noexcept;
 
 }  // namespace compueye::recon

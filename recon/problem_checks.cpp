@@ -23,6 +23,9 @@ hal::Result<void> check_objective(const Objective& objective) {
   if (!std::isfinite(objective.lambda) || objective.lambda < 0.0) {
     return out_of_range("lambda", objective.lambda, "a finite number of 0 or more");
   }
+  if (objective.epsilon && !(std::isfinite(*objective.epsilon) && *objective.epsilon >= 0.0)) {
+    return out_of_range("epsilon", *objective.epsilon, "a finite number of 0 or more");
+  }
   const bool ordered = std::isfinite(objective.lo) && std::isfinite(objective.hi) && objective.lo < objective.hi;
   if (objective.constraint == ConstraintKind::box && !ordered) {
     return fail(ErrorCode::out_of_range, "box",
@@ -41,6 +44,7 @@ hal::Result<void> check_plan(const Plan& plan) {
   }
   if (!std::isfinite(plan.rho) || plan.rho < 0.0)
     return out_of_range("rho", plan.rho, "more than 0, or 0 for the rule");
+  if (plan.rank < 0) return out_of_range("rank", plan.rank, "1 or more, or 0 for as many as lambda says");
   return {};
 }
 
@@ -50,6 +54,15 @@ hal::Result<void> check_pair(const Objective& objective, const Plan& plan) {
                 std::string(name(plan.solver)) + " does not take basis " + std::string(name(objective.basis)) +
                     " with constraint " + std::string(name(objective.constraint)) +
                     "; these solvers do: " + solvers_for(objective.basis, objective.constraint));
+  }
+  const bool bounds =
+      plan.solver == SolverKind::adm || plan.solver == SolverKind::adm_as_published || plan.solver == SolverKind::omp;
+  if (objective.epsilon && !bounds) {
+    return fail(ErrorCode::usage, "epsilon",
+                std::string(name(plan.solver)) + " has no such bound; these solvers do: adm, omp");
+  }
+  if (plan.solver == SolverKind::tsvd && plan.rank == 0 && !(objective.lambda > 0.0)) {
+    return fail(ErrorCode::usage, "tsvd", "needs a rank, or a lambda above 0 (the least square of a singular value)");
   }
   if (plan.solver == SolverKind::tikhonov && !(objective.lambda > 0.0)) {
     return fail(ErrorCode::usage, "tikhonov", "needs a lambda above 0 (it is the weight of ||x||^2)");

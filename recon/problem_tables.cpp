@@ -1,19 +1,40 @@
 #include "recon/problem_tables.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 
+#include "recon/atom_norms.hpp"
 #include "recon/dct_tables.hpp"
 #include "recon/fourier_tables.hpp"
+#include "recon/mirror_symmetry.hpp"
+#include "recon/singular_modes.hpp"
 #include "recon/smoothing.hpp"
 #include "recon/step_sizes.hpp"
 
 namespace compueye::recon {
 namespace {
 
-/// Dense rows are read several times faster per entry than sparse ones; below this share sparse wins.
-constexpr double dense_above = 0.15;
+/// What one application takes, in loads of a sparse entry: dense rows are read seven times as fast an entry, a tap of a
+/// running sum, or of four at once, takes about as long as a sparse entry, and the sums themselves a load a pixel.
+constexpr double dense_entry_cost = 0.15;
+
+/// The mirror images that running sums can use at once, when running sums are the quickest form; else nothing.
+std::optional<MirrorSymmetry> images_for_running_sums(const Response& seeing, int image_rows, int image_cols) {
+  const double entries = static_cast<double>(seeing.rows()) * static_cast<double>(seeing.cols());
+  const double others = std::min(dense_entry_cost * entries, static_cast<double>(seeing.nonzeros()));
+  const auto taps = static_cast<double>(running_sum_taps(seeing, image_rows, image_cols));
+  const auto pixels = static_cast<double>(seeing.cols());
+  if (taps / 4.0 + pixels >= others) return std::nullopt;
+  MirrorSymmetry symmetry = find_mirror_symmetry(seeing, image_rows, image_cols);
+  const bool four = symmetry.order() == 4 && image_rows % 2 == 0 && image_cols % 2 == 0;
+  if (!four && taps + pixels >= others) return std::nullopt;
+  return symmetry;
+}
 
 /// What only double can tell from nought would be a subnormal number in every product.
 template <class T>
@@ -53,26 +74,38 @@ void fill_numbers(const Objective& objective, const Plan& plan, core::FrameProbl
   problem.lo = box ? static_cast<T>(objective.lo) : T(0);
   problem.hi = box ? static_cast<T>(objective.hi) : infinity;
   problem.lambda = static_cast<T>(objective.lambda);
+  problem.bounded = objective.epsilon.has_value();
+  problem.epsilon = static_cast<T>(objective.epsilon.value_or(0.0));
+  problem.measure_gap = plan.measure_gap;
   problem.rho = static_cast<T>(plan.rho);
   problem.relaxation = static_cast<T>(plan.relaxation);
   problem.point.basis = objective.basis;
   problem.point.solver = plan.solver;
   problem.point.precision = plan.precision;
-  problem.point.iterations = plan.solver == SolverKind::tikhonov ? 1 : plan.iterations;
+  const bool direct = plan.solver == SolverKind::tikhonov || plan.solver == SolverKind::tsvd;
+  problem.point.iterations = direct ? 1 : plan.iterations;
   problem.point.op = problem.a.kind;
 }
 
 }  // namespace
 
 template <class T>
-hal::Result<void> fill_operator(const Response& seeing, OwnedTables<T>& tables) {
-  const auto rows = static_cast<std::size_t>(seeing.rows()), cols = static_cast<std::size_t>(seeing.cols());
-  const std::int64_t nonzeros = seeing.nonzeros();
-  const double density = static_cast<double>(nonzeros) / (static_cast<double>(rows) * static_cast<double>(cols));
+hal::Result<void> fill_operator(const Response& seeing, int image_rows, int image_cols, OwnedTables<T>& tables) {
   core::LinearOperator<T>& a = tables.problem.a;
-  a.rows = rows;
-  a.cols = cols;
-  a.kind = density > dense_above ? OperatorKind::dense : OperatorKind::csr;
+  a.rows = static_cast<std::size_t>(seeing.rows());
+  a.cols = static_cast<std::size_t>(seeing.cols());
+  const std::int64_t nonzeros = seeing.nonzeros();
+  if (const auto images = images_for_running_sums(seeing, image_rows, image_cols)) {
+    auto sums = running_sum_tables<T>(seeing, image_rows, image_cols, *images);
+    if (sums) {
+      tables.sums = std::move(*sums);
+      a.kind = tables.sums.view.symmetric ? OperatorKind::running_sums_symmetric : OperatorKind::running_sums;
+      a.sums = tables.sums.view;
+      return {};
+    }
+  }
+  const double dense_cost = dense_entry_cost * static_cast<double>(a.rows) * static_cast<double>(a.cols);
+  a.kind = dense_cost < static_cast<double>(nonzeros) ? OperatorKind::dense : OperatorKind::csr;
   constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();  // row starts are 32 bits wide
   if (a.kind == OperatorKind::csr && nonzeros > most) {
     return hal::fail(hal::ErrorCode::unsupported, "response",
@@ -116,6 +149,18 @@ template <class T>
 void fill_choice(const Response& seeing, const Objective& objective, const Plan& plan, OwnedTables<T>& tables) {
   core::FrameProblem<T>& problem = tables.problem;
   fill_numbers(objective, plan, problem);
+  const auto values = seeing.values();
+  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  problem.column_norm = static_cast<T>(std::sqrt(squares / seeing.cols()));
+  const double magnitudes =
+      std::accumulate(values.begin(), values.end(), 0.0, [](double sum, double v) { return sum + std::abs(v); });
+  problem.mean_row_sum = static_cast<T>(magnitudes / seeing.rows());
+  if (plan.solver == SolverKind::omp) {
+    const std::vector<double> norms =
+        atom_norms(seeing, static_cast<int>(problem.image_rows), static_cast<int>(problem.image_cols), objective.basis);
+    tables.atom_norms.assign(norms.begin(), norms.end());
+    problem.atom_norms = tables.atom_norms.data();
+  }
   if (plan.solver == SolverKind::fista) problem.lipschitz = static_cast<T>(squared_norm_bound(seeing));
   if (plan.solver != SolverKind::chambolle_pock) return;
   const PrimalDualSteps steps = primal_dual_steps(seeing, problem.psi.squared_norm());
@@ -126,8 +171,26 @@ void fill_choice(const Response& seeing, const Objective& objective, const Plan&
   problem.basis_step = static_cast<T>(steps.basis);
 }
 
-template hal::Result<void> fill_operator(const Response&, OwnedTables<float>&);
-template hal::Result<void> fill_operator(const Response&, OwnedTables<double>&);
+template <class T>
+hal::Result<void> fill_modes(const Response& seeing, const Objective& objective, const Plan& plan,
+                             const Progress& progress, OwnedTables<T>& tables) {
+  core::FrameProblem<T>& problem = tables.problem;
+  const double least_square = plan.rank > 0 ? 0.0 : objective.lambda;
+  auto found = singular_modes(seeing, static_cast<int>(problem.image_rows), static_cast<int>(problem.image_cols),
+                              plan.rank, least_square, progress);
+  if (!found) return tl::unexpected(found.error());
+  tables.modes.assign(found->left.begin(), found->left.end());
+  for (const double value : found->values) tables.mode_weights.push_back(static_cast<T>(1.0 / (value * value)));
+  problem.modes = {found->values.size(), tables.modes.data(), tables.mode_weights.data()};
+  return {};
+}
+
+template hal::Result<void> fill_modes(const Response&, const Objective&, const Plan&, const Progress&,
+                                      OwnedTables<float>&);
+template hal::Result<void> fill_modes(const Response&, const Objective&, const Plan&, const Progress&,
+                                      OwnedTables<double>&);
+template hal::Result<void> fill_operator(const Response&, int, int, OwnedTables<float>&);
+template hal::Result<void> fill_operator(const Response&, int, int, OwnedTables<double>&);
 template void fill_basis(BasisKind, int, int, OwnedTables<float>&);
 template void fill_basis(BasisKind, int, int, OwnedTables<double>&);
 template void fill_choice(const Response&, const Objective&, const Plan&, OwnedTables<float>&);

@@ -9,10 +9,14 @@
 #include <variant>
 #include <vector>
 
+#include "recon/core/adm.hpp"
+#include "recon/core/adm_as_published.hpp"
 #include "recon/core/admm.hpp"
 #include "recon/core/chambolle_pock.hpp"
 #include "recon/core/fista.hpp"
+#include "recon/core/omp.hpp"
 #include "recon/core/tikhonov.hpp"
+#include "recon/core/tsvd.hpp"
 #include "recon/core/workspace.hpp"
 #include "recon/number_text.hpp"
 #include "recon/penalty_rule.hpp"
@@ -37,6 +41,14 @@ FrameInfo solve_with(const core::FrameProblem<T>& problem, const float* y, const
       return core::solve_chambolle_pock(problem, y, weights, workspace, x);
     case SolverKind::tikhonov:
       return core::solve_tikhonov(problem, y, weights, workspace, x);
+    case SolverKind::adm:
+      return core::solve_adm(problem, y, weights, workspace, x);
+    case SolverKind::adm_as_published:
+      return core::solve_adm_as_published(problem, y, weights, workspace, x);
+    case SolverKind::omp:
+      return core::solve_omp(problem, y, weights, workspace, x);
+    case SolverKind::tsvd:
+      return core::solve_tsvd(problem, y, weights, workspace, x);
   }
   return {};
 }
@@ -52,6 +64,14 @@ std::size_t bytes_for(const core::FrameProblem<T>& problem) noexcept {
       return core::chambolle_pock_bytes(problem);
     case SolverKind::tikhonov:
       return core::tikhonov_bytes(problem);
+    case SolverKind::adm:
+      return core::adm_bytes(problem);
+    case SolverKind::adm_as_published:
+      return core::adm_as_published_bytes(problem);
+    case SolverKind::omp:
+      return core::omp_bytes(problem);
+    case SolverKind::tsvd:
+      return core::tsvd_bytes(problem);
   }
   return 0;
 }
@@ -72,15 +92,20 @@ struct Reconstructor::Tables {
   hal::Result<void> fill(const Response& response, std::optional<Factor> stored, const Progress& progress) {
     OwnedTables<T>& tables = by_precision.template emplace<OwnedTables<T>>();
     const Response sees = response.select_rows(seeing);
-    if (auto filled = fill_operator(sees, tables); !filled) return filled;
+    if (auto filled = fill_operator(sees, image_rows, image_cols, tables); !filled) return filled;
     fill_basis(objective.basis, image_rows, image_cols, tables);
+    tables.problem.image_rows = static_cast<std::size_t>(image_rows);
+    tables.problem.image_cols = static_cast<std::size_t>(image_cols);
     fill_choice(sees, objective, plan, tables);
     tables.problem.seeing = seeing.data();
     tables.problem.channels = static_cast<std::size_t>(channels);
-    tables.problem.image_rows = static_cast<std::size_t>(image_rows);
-    tables.problem.image_cols = static_cast<std::size_t>(image_cols);
     tables.problem.max_reweighted = static_cast<std::size_t>(plan.max_reweighted);
     tables.problem.inverse.order = seeing.size();
+    if (plan.solver == SolverKind::tsvd) {
+      return fill_modes(sees, objective, plan, progress, tables).map([&] {
+        plan.rank = static_cast<int>(tables.problem.modes.rank);
+      });
+    }
     return uses_factor(plan.solver) ? fill_factor(sees, tables, std::move(stored), progress) : hal::Result<void>{};
   }
 

@@ -16,13 +16,16 @@ namespace compueye::recon {
 enum class ConstraintKind : std::uint8_t { none, nonnegative, box };
 
 /// min over x of 1/2 ||W^(1/2)(Ax-y)||^2 + lambda ||Psi x||_1 subject to the constraint (tikhonov: + lambda/2 ||x||^2
-/// instead of the l1 term). Intensities are in units of display white.
+/// instead of the l1 term; omp and tsvd: no term, lambda is where they stop). With an epsilon, for adm and omp:
+/// min ||Psi x||_1 (omp: the number of non-zeros of Psi x) subject to ||W^(1/2)(Ax-y)|| <= epsilon and the constraint;
+/// lambda then plays no part. Intensities are in units of display white.
 struct Objective {
   BasisKind basis = BasisKind::identity;  ///< Psi, see core/basis.hpp
   ConstraintKind constraint = ConstraintKind::none;
   double lo = 0.0;  ///< box only; lo < hi
   double hi = 1.0;
-  double lambda = 0.0;  ///< >= 0
+  double lambda = 0.0;                           ///< >= 0
+  std::optional<double> epsilon = std::nullopt;  ///< >= 0, in units of y
 };
 
 /// How it is solved, decided before the first frame.
@@ -30,9 +33,11 @@ struct Plan {
   SolverKind solver = SolverKind::admm;
   /// Of the frame path. Relative errors grow with the condition number of A A' + rho I times 6e-8 (f32) or 1e-16 (f64).
   Precision precision = Precision::f32;
-  int iterations = 100;     ///< exactly this many per frame, 1 .. 1e6
+  int iterations = 100;     ///< exactly this many per frame, 1 .. 1e6; at most, for omp and adm as published
   double rho = 0.0;         ///< ADMM penalty; 0 = by rule (recon/penalty_rule.hpp)
-  double relaxation = 1.7;  ///< 0 < relaxation < 2
+  double relaxation = 1.7;  ///< of admm, 0 < relaxation < 2
+  /// tsvd: how many singular pairs to keep; 0 = those with s^2 >= lambda, which is where tikhonov's filter is a half.
+  int rank = 0;
   /// Seeing channels that may have a weight other than one in a frame; -1 = a tenth of them, rounded up. Costs
   /// max_reweighted * (M + max_reweighted) numbers of workspace.
   int max_reweighted = -1;
@@ -65,7 +70,7 @@ class Reconstructor {
   [[nodiscard]] int pixels() const noexcept;  ///< N
   [[nodiscard]] int seeing_channels() const noexcept;
   [[nodiscard]] const Objective& objective() const noexcept;
-  [[nodiscard]] const Plan& plan() const noexcept;  ///< with every rule resolved (rho, max_reweighted)
+  [[nodiscard]] const Plan& plan() const noexcept;  ///< with every rule resolved (rho, rank, max_reweighted)
   [[nodiscard]] OperatingPoint operating_point() const noexcept;
 
   /// Exact size of the workspace that solve() wants, for 64-byte aligned memory.

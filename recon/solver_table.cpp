@@ -5,15 +5,22 @@
 namespace compueye::recon {
 
 bool supports(SolverKind solver, BasisKind basis, ConstraintKind constraint) noexcept {
+  const bool pixels = basis == BasisKind::identity, orthonormal = basis != BasisKind::tv;
   const bool unconstrained = constraint == ConstraintKind::none;
   switch (solver) {
     case SolverKind::admm:
     case SolverKind::chambolle_pock:
       return true;
     case SolverKind::fista:
-      return basis == BasisKind::identity || (unconstrained && basis != BasisKind::tv);
+    case SolverKind::adm:
+      return pixels || (orthonormal && unconstrained);
+    case SolverKind::adm_as_published:
+      return (pixels && constraint != ConstraintKind::box) || (orthonormal && unconstrained);
+    case SolverKind::omp:
+      return orthonormal && unconstrained;
     case SolverKind::tikhonov:
-      return basis == BasisKind::identity && unconstrained;
+    case SolverKind::tsvd:
+      return pixels && unconstrained;
   }
   return false;
 }

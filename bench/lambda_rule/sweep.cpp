@@ -39,7 +39,9 @@ SweptEye::SweptEye(const Case& c) : case_(c), response_(response_of(c)) {}
 Sweep SweptEye::sweep(const std::string& scene, std::uint64_t seed, double sigma, bool with_risk) {
   const hal::Image truth = sim::render_built_in(scene, case_.object.rows, case_.object.cols, seed).value();
   const std::vector<float> y = samples(scene, truth, seed, sigma);
-  const double rule = recon::lambda_by_rule(response_, recon::SolverKind::admm, case_.basis, sigma).value();
+  const double rule = recon::lambda_by_rule(response_, case_.object.rows, case_.object.cols, recon::SolverKind::admm,
+                                            case_.basis, sigma)
+                          .value();
   Sweep result{scene, seed, sigma, {}, {}, 0.0, 0.0, 1.0};
   for (int k = -case_.grid_below; k <= case_.grid_above; ++k) {
     result.multiples.push_back(std::pow(case_.grid_step, k));

@@ -114,6 +114,28 @@ Result<Layout> measure(const Panel& panel, int min_panel_pixels) {
   return layout;
 }
 
+/// Panels side by side.
+struct SheetRow {
+  std::vector<Layout> layouts;
+  int picture_height = 0;
+  int caption_height = 0;
+  std::int64_t width = 2 * margin - gap;
+  [[nodiscard]] int height() const { return picture_height + caption_height; }
+};
+
+Result<SheetRow> measure_row(std::span<const Panel> panels, int min_panel_pixels) {
+  SheetRow row;
+  for (const Panel& panel : panels) {
+    auto layout = measure(panel, min_panel_pixels);
+    if (!layout) return tl::unexpected(std::move(layout.error()));
+    row.picture_height = std::max(row.picture_height, layout->picture_rows);
+    row.caption_height = std::max(row.caption_height, layout->caption_height());
+    row.width += layout->width + gap;
+    row.layouts.push_back(std::move(*layout));
+  }
+  return row;
+}
+
 std::string short_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%+.3g", value);
@@ -191,22 +213,22 @@ Result<Panel> error_panel(const hal::Image& picture, const hal::Image& truth) {
   return panel;
 }
 
-Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const Panel> panels, int min_panel_pixels) {
+Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const Panel> panels, int min_panel_pixels,
+                                       int panels_a_row) {
   if (panels.empty()) return hal::fail(ErrorCode::usage, "contact sheet", "was given no panels, expected at least one");
   const int least = std::clamp(min_panel_pixels, 1, most_panel_pixels);
-  std::vector<Layout> layouts;
-  int picture_height = 0, caption_height = 0;
-  std::int64_t width = 2 * margin - gap;
-  for (const Panel& panel : panels) {
-    auto layout = measure(panel, least);
-    if (!layout) return tl::unexpected(std::move(layout.error()));
-    picture_height = std::max(picture_height, layout->picture_rows);
-    caption_height = std::max(caption_height, layout->caption_height());
-    width += layout->width + gap;
-    layouts.push_back(std::move(*layout));
-  }
+  const std::size_t columns = panels_a_row > 0 ? static_cast<std::size_t>(panels_a_row) : panels.size();
+  std::vector<SheetRow> rows;
+  std::int64_t width = 0;
   const int title_height = title.empty() ? 0 : line_height + 10;
-  const std::int64_t height = margin + title_height + picture_height + caption_height + margin / 2;
+  std::int64_t height = margin + title_height + margin / 2 - gap;
+  for (std::size_t first = 0; first < panels.size(); first += columns) {
+    auto row = measure_row(panels.subspan(first, std::min(columns, panels.size() - first)), least);
+    if (!row) return tl::unexpected(std::move(row.error()));
+    width = std::max(width, row->width);
+    height += row->height() + gap;
+    rows.push_back(std::move(*row));
+  }
   if (width > max_png_side || height > max_png_side) {
     return hal::fail(ErrorCode::usage, "contact sheet",
                      "would have " + std::to_string(width) + " x " + std::to_string(height) +
@@ -214,17 +236,21 @@ Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const
   }
   Canvas canvas(static_cast<int>(height), static_cast<int>(width));
   if (!title.empty()) canvas.text(margin - 4, margin, title, name_colour);
-  int left = margin;
-  for (const Layout& layout : layouts) {
-    draw_panel(canvas, layout, margin + title_height, left, picture_height);
-    left += layout.width + gap;
+  int top = margin + title_height;
+  for (const SheetRow& row : rows) {
+    int left = margin;
+    for (const Layout& layout : row.layouts) {
+      draw_panel(canvas, layout, top, left, row.picture_height);
+      left += layout.width + gap;
+    }
+    top += row.height() + gap;
   }
   return canvas.take();
 }
 
 Result<void> write_contact_sheet(const std::filesystem::path& path, const std::string& title,
-                                 std::span<const Panel> panels, int min_panel_pixels) {
-  auto sheet = compose_contact_sheet(title, panels, min_panel_pixels);
+                                 std::span<const Panel> panels, int min_panel_pixels, int panels_a_row) {
+  auto sheet = compose_contact_sheet(title, panels, min_panel_pixels, panels_a_row);
   if (!sheet) {
     sheet.error().place = path.string();
     return tl::unexpected(std::move(sheet.error()));

@@ -33,14 +33,15 @@ struct Panel {
 /// The panel "error" with picture minus truth. Error mismatch: different sizes.
 [[nodiscard]] hal::Result<Panel> error_panel(const hal::Image& picture, const hal::Image& truth);
 
-/// Puts panels side by side under a title: every picture enlarged by a whole number until its longer side has at least
-/// `min_panel_pixels`, its caption below. Text is ASCII. Errors: usage (no panels, an empty picture, a sheet too large
-/// for a PNG).
+/// Puts panels side by side under a title, `panels_a_row` of them (0: all), and further rows below: every picture
+/// enlarged by a whole number until its longer side has at least `min_panel_pixels`, its caption below. Text is ASCII.
+/// Errors: usage (no panels, an empty picture, a sheet too large for a PNG).
 [[nodiscard]] hal::Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const Panel> panels,
-                                                          int min_panel_pixels = 320);
+                                                          int min_panel_pixels = 320, int panels_a_row = 0);
 
 /// compose_contact_sheet() into a PNG, atomically.
 [[nodiscard]] hal::Result<void> write_contact_sheet(const std::filesystem::path& path, const std::string& title,
-                                                    std::span<const Panel> panels, int min_panel_pixels = 320);
+                                                    std::span<const Panel> panels, int min_panel_pixels = 320,
+                                                    int panels_a_row = 0);
 
 }  // namespace compueye::firmware

@@ -1,32 +1,14 @@
 #include "recon/core/admm.hpp"
 
+#include "recon/core/duality_gap.hpp"
 #include "recon/core/frame_outcome.hpp"
 #include "recon/core/proximal.hpp"
-#include "recon/core/square_root.hpp"
+#include "recon/core/split_residuals.hpp"
 #include "recon/core/vector_sums.hpp"
 #include "recon/core/weighted_step.hpp"
 
 namespace compueye::recon::core {
 namespace {
-
-/// Residuals below this share of the variables' size count as converged.
-constexpr double converged_below = 1e-3;
-
-/// Squares over all copies after an iteration: how far they are from x, how far they moved, and the sizes to compare
-/// those with.
-struct Gap {
-  double apart = 0.0, moved = 0.0;
-  double of_x = 0.0, of_copies = 0.0, of_duals = 0.0;
-};
-
-/// sqrt(square / size), the size being at least a ten-thousandth of `other` (squares: a hundredth in length). Boyd et
-/// al. 2011, section 3.3.1, compare the primal residual with x and the dual one with u alone; where the solution is
-/// exactly zero, or the constraint and the l1 term are idle, those vanish and rounding would never count as converged.
-double relative(double square, double size, double other) noexcept {
-  const double least = 1e-4 * other;
-  const double scale = size > least ? size : least;
-  return scale > 0.0 ? square_root(square / scale) : 0.0;
-}
 
 /// A copy z of x, or of Psi x, with its scaled dual u and its proximal map.
 template <class T>
@@ -50,14 +32,10 @@ struct Copy {
     relaxed_prox_step(x, z, u, n, relaxation, threshold, lo, hi);
   }
 
-  void update_and_measure(const T* x, T* before, std::size_t n, T relaxation, Gap& gap) noexcept {
+  void update_and_measure(const T* x, T* before, std::size_t n, T relaxation, SplitResiduals& residuals) noexcept {
     for (std::size_t k = 0; k < n; ++k) before[k] = z[k];
     update(x, n, relaxation);
-    gap.apart += static_cast<double>(squared_distance(x, z, n));
-    gap.moved += static_cast<double>(squared_distance(z, before, n));
-    gap.of_x += static_cast<double>(dot(x, x, n));
-    gap.of_copies += static_cast<double>(dot(z, z, n));
-    gap.of_duals += static_cast<double>(dot(u, u, n));
+    residuals.add(x, z, before, u, n);
   }
 };
 
@@ -73,7 +51,8 @@ class Admm {
         smooth_(!problem.metric.is_identity()),
         pixel_copy_(!sparse_basis_ || problem.constrained || smooth_),
         coefficient_count_(problem.psi.coefficients()),
-        before_(memory.take<T>(coefficient_count_)) {
+        before_(memory.take<T>(coefficient_count_)),
+        gap_(problem, problem.measure_gap, memory) {
     if (sparse_basis_) {
       coefficients_ = memory.take<T>(coefficient_count_);
       scratch_ = memory.take<T>(problem.psi.scratch_size());
@@ -91,9 +70,9 @@ class Admm {
       return info;
     }
     clear();
-    Gap gap;
-    for (int k = 1; k <= problem_.point.iterations; ++k) iterate(k == problem_.point.iterations ? &gap : nullptr);
-    finish(gap, info);
+    SplitResiduals residuals;
+    for (int k = 1; k <= problem_.point.iterations; ++k) iterate(k == problem_.point.iterations ? &residuals : nullptr);
+    finish(residuals, info);
     deliver(x_, finite_, n_, info, x);
     return info;
   }
@@ -116,14 +95,14 @@ class Admm {
     if (pixel_copy_) in_pixels_.clear(n_);
   }
 
-  void iterate(Gap* gap) noexcept {
+  void iterate(SplitResiduals* residuals) noexcept {
     meet();
     step_.apply(x_);
     if (sparse_basis_) {
       analyse(problem_.psi, x_, coefficients_, scratch_);
-      move(in_basis_, coefficients_, coefficient_count_, gap);
+      move(in_basis_, coefficients_, coefficient_count_, residuals);
     }
-    if (pixel_copy_) move(in_pixels_, x_, n_, gap);
+    if (pixel_copy_) move(in_pixels_, x_, n_, residuals);
   }
 
   /// x_ = the point the copies pull to: K0^-1 (Psi' (z - u) + (z - u)) or their average, or the only one.
@@ -139,16 +118,16 @@ class Admm {
     }
   }
 
-  void move(Copy<T>& copy, const T* x, std::size_t n, Gap* gap) noexcept {
-    if (gap == nullptr) {
+  void move(Copy<T>& copy, const T* x, std::size_t n, SplitResiduals* residuals) noexcept {
+    if (residuals == nullptr) {
       copy.update(x, n, problem_.relaxation);
     } else {
-      copy.update_and_measure(x, before_, n, problem_.relaxation, *gap);
+      copy.update_and_measure(x, before_, n, problem_.relaxation, *residuals);
     }
   }
 
   /// The copy that is feasible (pixels) or sparse (coefficients) is the answer, not the average they are drawn to.
-  void finish(const Gap& gap, FrameInfo& info) noexcept {
+  void finish(const SplitResiduals& residuals, FrameInfo& info) noexcept {
     finite_ = all_finite(x_, n_);  // a clip would turn NaN into a number
     if (pixel_copy_) {
       for (std::size_t k = 0; k < n_; ++k) x_[k] = in_pixels_.z[k];
@@ -161,12 +140,16 @@ class Admm {
     const double penalty =
         static_cast<double>(problem_.lambda) * static_cast<double>(sum_of_magnitudes(penalised, coefficient_count_));
     evaluate(step_.samples(), x_, penalty, step_.row_scratch(), info);
-    const double variables = gap.of_x > gap.of_copies ? gap.of_x : gap.of_copies;
-    info.primal_residual = relative(gap.apart, variables, gap.of_duals);
-    info.dual_residual = relative(gap.moved, gap.of_duals, variables);
-    info.iterations = problem_.point.iterations;
-    const bool settled = info.primal_residual < converged_below && info.dual_residual < converged_below;
-    info.health = settled ? Health::converged : Health::budget_used;
+    info.duality_gap = gap_.measure(step_.samples(), x_, basis_dual(), info.objective);
+    residuals.judge(problem_.point.iterations, info);
+  }
+
+  /// Unscaled, where what the coefficients were is no longer needed.
+  const T* basis_dual() noexcept {
+    if (!sparse_basis_ || !problem_.measure_gap) return nullptr;
+    const T penalty = in_basis_.threshold > T(0) ? problem_.lambda / in_basis_.threshold : T(0);
+    for (std::size_t k = 0; k < coefficient_count_; ++k) coefficients_[k] = penalty * in_basis_.u[k];
+    return coefficients_;
   }
 
   const FrameProblem<T>& problem_;
@@ -178,6 +161,7 @@ class Admm {
   bool pixel_copy_;
   std::size_t coefficient_count_;
   T* before_;
+  DualityGap<T> gap_;
   T* coefficients_ = nullptr;
   T* scratch_ = nullptr;
   Copy<T> in_basis_;

@@ -1,5 +1,6 @@
 #include "recon/core/chambolle_pock.hpp"
 
+#include "recon/core/duality_gap.hpp"
 #include "recon/core/frame_outcome.hpp"
 #include "recon/core/proximal.hpp"
 #include "recon/core/square_root.hpp"
@@ -7,8 +8,6 @@
 
 namespace compueye::recon::core {
 namespace {
-
-constexpr double converged_below = 1e-4;
 
 template <class T>
 class ChambollePock {
@@ -22,15 +21,16 @@ class ChambollePock {
         residual_(memory.take<T>(problem.a.rows)),
         x_(memory.take<T>(n_)),
         ahead_(memory.take<T>(n_)),
-        gradient_(memory.take<T>(n_)),
+        projected_(memory.take<T>(n_)),
         basis_dual_(memory.take<T>(coefficient_count_)),
         coefficients_(memory.take<T>(coefficient_count_)),
-        scratch_(memory.take<T>(problem.psi.scratch_size())) {}
+        scratch_(memory.take<T>(problem.psi.scratch_size())),
+        gap_(problem, true, memory) {}
 
   FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
     FrameInfo info = begin_outcome(problem_);
     if (!samples_.gather(y, weights)) {
-      deliver(x_, false, n_, info, x);
+      deliver(projected_, false, n_, info, x);
       return info;
     }
     for (std::size_t k = 0; k < n_; ++k) x_[k] = ahead_[k] = T(0);
@@ -42,7 +42,7 @@ class ChambollePock {
       moved = descend();
     }
     finish(moved, info);
-    deliver(x_, finite_, n_, info, x);
+    deliver(projected_, finite_, n_, info, x);
     return info;
   }
 
@@ -51,48 +51,60 @@ class ChambollePock {
   void ascend() noexcept {
     samples_.residual(ahead_, residual_);
     const T* weights = samples_.weights();
+    const T relaxation = problem_.relaxation;
     for (std::size_t i = 0; i < problem_.a.rows; ++i) {
       const T step = problem_.dual_steps[i];
-      row_dual_[i] = weights[i] * (row_dual_[i] - step * residual_[i]) / (weights[i] + step);
+      const T dual = weights[i] * (row_dual_[i] - step * residual_[i]) / (weights[i] + step);
+      row_dual_[i] += relaxation * (dual - row_dual_[i]);
     }
     flush_tiny(row_dual_, problem_.a.rows);
     analyse(problem_.psi, ahead_, coefficients_, scratch_);
-    const T lambda = problem_.lambda;
     for (std::size_t k = 0; k < coefficient_count_; ++k) {
-      const T q = basis_dual_[k] + problem_.basis_step * coefficients_[k];
-      const T above = q > -lambda ? q : -lambda;
-      basis_dual_[k] = above < lambda ? above : lambda;
+      const T dual = within_lambda(basis_dual_[k] + problem_.basis_step * coefficients_[k]);
+      basis_dual_[k] += relaxation * (dual - basis_dual_[k]);
     }
     flush_tiny(basis_dual_, coefficient_count_);
   }
 
-  /// x = projection(x - t (A'u + Psi'q)), ahead = 2 x - x before; returns the relative change.
+  /// p = projection(x - t (A'u + Psi'q)), ahead = 2 p - x, x += relaxation (p - x); returns ||p - x|| / ||p||.
   double descend() noexcept {
-    synthesise(problem_.psi, basis_dual_, gradient_, scratch_);
-    adjoint_accumulate(problem_.a, row_dual_, gradient_);
+    synthesise(problem_.psi, basis_dual_, projected_, scratch_);
+    samples_.adjoint_accumulate(row_dual_, projected_);
     const T lo = problem_.constrained && problem_.lo > T(-1e30) ? problem_.lo : T(-1e30);
     const T hi = problem_.constrained && problem_.hi < T(1e30) ? problem_.hi : T(1e30);
     for (std::size_t k = 0; k < n_; ++k) {
-      const T projected = prox_l1_box(x_[k] - problem_.primal_steps[k] * gradient_[k], T(0), lo, hi);
-      ahead_[k] = T(2) * projected - x_[k];
-      x_[k] = projected;
+      projected_[k] = prox_l1_box(x_[k] - problem_.primal_steps[k] * projected_[k], T(0), lo, hi);
     }
-    flush_tiny(x_, n_);
+    flush_tiny(projected_, n_);
+    const double size = static_cast<double>(dot(projected_, projected_, n_));
+    const double moved = static_cast<double>(squared_distance(projected_, x_, n_));
+    for (std::size_t k = 0; k < n_; ++k) {
+      ahead_[k] = T(2) * projected_[k] - x_[k];
+      x_[k] += problem_.relaxation * (projected_[k] - x_[k]);
+    }
     flush_tiny(ahead_, n_);
-    const double size = static_cast<double>(dot(x_, x_, n_));
-    const double moved = static_cast<double>(squared_distance(ahead_, x_, n_));
+    flush_tiny(x_, n_);
     return size > 0.0 ? square_root(moved / size) : 0.0;
   }
 
   void finish(double moved, FrameInfo& info) noexcept {
-    finite_ = all_finite(gradient_, n_);  // a clip would turn NaN into a number
-    analyse(problem_.psi, x_, coefficients_, scratch_);
+    finite_ = all_finite(x_, n_);  // the projection would have turned NaN into a number
+    analyse(problem_.psi, projected_, coefficients_, scratch_);
     const double penalty = static_cast<double>(problem_.lambda) *
                            static_cast<double>(sum_of_magnitudes(coefficients_, coefficient_count_));
-    evaluate(samples_, x_, penalty, residual_, info);
+    evaluate(samples_, projected_, penalty, residual_, info);
+    // Relaxation may have carried them beyond their bounds.
+    for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = within_lambda(basis_dual_[k]);
+    const double gap = gap_.measure(samples_, projected_, basis_dual_, info.objective);
+    info.duality_gap = problem_.measure_gap ? gap : -1.0;
     info.primal_residual = moved;
     info.iterations = problem_.point.iterations;
-    info.health = moved < converged_below ? Health::converged : Health::budget_used;
+    info.health = health_by_gap(gap, info.objective, moved);
+  }
+
+  [[nodiscard]] T within_lambda(T q) const noexcept {
+    const T above = q > -problem_.lambda ? q : -problem_.lambda;
+    return above < problem_.lambda ? above : problem_.lambda;
   }
 
   const FrameProblem<T>& problem_;
@@ -103,10 +115,11 @@ class ChambollePock {
   T* residual_;
   T* x_;
   T* ahead_;
-  T* gradient_;
+  T* projected_;
   T* basis_dual_;
   T* coefficients_;
   T* scratch_;
+  DualityGap<T> gap_;
   bool finite_ = true;
 };
 

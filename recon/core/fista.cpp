@@ -1,5 +1,6 @@
 #include "recon/core/fista.hpp"
 
+#include "recon/core/duality_gap.hpp"
 #include "recon/core/frame_outcome.hpp"
 #include "recon/core/proximal.hpp"
 #include "recon/core/square_root.hpp"
@@ -7,8 +8,6 @@
 
 namespace compueye::recon::core {
 namespace {
-
-constexpr double converged_below = 1e-4;
 
 template <class T>
 class Fista {
@@ -23,7 +22,8 @@ class Fista {
         next_(memory.take<T>(n_)),
         picture_(memory.take<T>(n_)),
         gradient_(memory.take<T>(n_)),
-        scratch_(memory.take<T>(problem.psi.scratch_size())) {}
+        scratch_(memory.take<T>(problem.psi.scratch_size())),
+        gap_(problem, true, memory) {}
 
   FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
     FrameInfo info = begin_outcome(problem_);
@@ -48,7 +48,7 @@ class Fista {
     samples_.residual(picture_, residual_);
     for (std::size_t i = 0; i < problem_.a.rows; ++i) residual_[i] *= samples_.weights()[i];
     for (std::size_t k = 0; k < n_; ++k) picture_[k] = T(0);
-    adjoint_accumulate(problem_.a, residual_, picture_);
+    samples_.adjoint_accumulate(residual_, picture_);
     analyse(problem_.psi, picture_, gradient_, scratch_);
     const bool pixels = problem_.psi.kind == BasisKind::identity && problem_.constrained;
     const T lo = pixels && problem_.lo > T(-1e30) ? problem_.lo : T(-1e30);
@@ -84,9 +84,11 @@ class Fista {
     synthesise(problem_.psi, last_, picture_, scratch_);
     const double penalty = static_cast<double>(problem_.lambda) * static_cast<double>(sum_of_magnitudes(last_, n_));
     evaluate(samples_, picture_, penalty, residual_, info);
+    const double gap = gap_.measure(samples_, picture_, nullptr, info.objective);
+    info.duality_gap = problem_.measure_gap ? gap : -1.0;
     info.primal_residual = step_share;
     info.iterations = problem_.point.iterations;
-    info.health = step_share < converged_below ? Health::converged : Health::budget_used;
+    info.health = health_by_gap(gap, info.objective, step_share);
   }
 
   const FrameProblem<T>& problem_;
@@ -99,6 +101,7 @@ class Fista {
   T* picture_;   // Psi' point, then A' W (y - A Psi' point)
   T* gradient_;  // its coefficients
   T* scratch_;
+  DualityGap<T> gap_;
 };
 
 }  // namespace

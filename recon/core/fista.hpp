@@ -11,7 +11,7 @@ namespace compueye::recon::core {
 /// by the gradient scheme (O'Donoghue & Candes 2015, section 3.2). One proximal map must do for the l1 term and the
 /// constraint together, so it takes pixels with any constraint, or an orthonormal basis with none.
 ///
-/// Steps of 1 / problem.lipschitz; exactly problem.point.iterations iterations.
+/// Steps of 1 / problem.lipschitz; exactly problem.point.iterations iterations. Health by the duality gap.
 template <class T>
 FrameInfo solve_fista(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
                       float* x) noexcept;

@@ -4,9 +4,9 @@
 
 namespace compueye::recon {
 
-enum class OperatorKind : std::uint8_t { dense, csr };
+enum class OperatorKind : std::uint8_t { dense, csr, running_sums, running_sums_symmetric };
 enum class BasisKind : std::uint8_t { identity, dct, haar, db4, dft, tv };
-enum class SolverKind : std::uint8_t { admm, tikhonov, fista, chambolle_pock };
+enum class SolverKind : std::uint8_t { admm, tikhonov, fista, chambolle_pock, adm, adm_as_published, omp, tsvd };
 enum class Precision : std::uint8_t { f32, f64 };
 
 /// One way of turning y into x, with a known cost.
@@ -19,7 +19,8 @@ struct OperatingPoint {
 };
 
 enum class Health : std::uint8_t {
-  converged,    ///< both optimality residuals are below 1e-3 after the last iteration
+  converged,    ///< both optimality residuals are below 1e-3 after the last iteration (fista, cp: the duality gap is
+                ///< below 1e-3 of the objective)
   budget_used,  ///< exactly K iterations done, residuals above that: normal in real time
   invalid,      ///< NaN or infinity in y or in the result, a weight outside 0..1, more reweighted channels than planned
                 ///< or buffers of the wrong size: x is all zero, and so are objective and residuals
@@ -37,8 +38,9 @@ struct FrameInfo {
   double residual = 0.0;         ///< ||W^(1/2)(Ax-y)||, in units of y
   double primal_residual = 0.0;  ///< ||x - z|| / ||x||, z being what is handed out; 0 for direct solvers
   double dual_residual = 0.0;    ///< ||z - z before|| / ||u||, u the scaled dual variables; 0 for direct solvers
-  /// Objective minus a dual objective, so at least as much as the objective lies above the optimum, to about 1e-6 of
-  /// the objective in float32. Negative: not asked for (Plan::measure_gap), or the solver has none.
+  /// Objective minus a dual objective, so at least as much as the objective lies above the optimum. In float32 it ends
+  /// at about 5e-4 of the objective where the residual is a hundredth of y. Negative: not asked for
+  /// (Plan::measure_gap), or the solver or the problem has none.
   double duality_gap = -1.0;
 };
 

@@ -11,6 +11,14 @@
 
 namespace compueye::recon::core {
 
+/// Leading singular pairs of A: its left singular vectors and the inverse squares of its singular values.
+template <class T>
+struct SingularModes {
+  std::size_t rank = 0;
+  const T* left = nullptr;             ///< a.rows x rank, row-major
+  const T* inverse_squares = nullptr;  ///< rank
+};
+
 /// Everything a frame is solved with, set up once and only read afterwards: views of tables owned by the caller
 /// (recon::Reconstructor on a computer with a heap, constant arrays on a microcontroller).
 ///
@@ -36,7 +44,14 @@ struct FrameProblem {
   const T* primal_steps = nullptr;  ///< a.cols of them, for cp (recon/step_sizes.hpp)
   const T* dual_steps = nullptr;    ///< a.rows of them, for cp
   T basis_step = T(0);              ///< for cp
-  OperatingPoint point;             ///< point.iterations = K
+  bool bounded = false;             ///< adm: min ||Psi x||_1 subject to ||W^(1/2)(A x - y)|| <= epsilon instead
+  T epsilon = T(0);
+  T mean_row_sum = T(1);          ///< of the magnitudes of A's entries
+  T column_norm = T(1);           ///< root mean square norm of A's columns
+  const T* atom_norms = nullptr;  ///< a.cols norms ||A psi_j||, for omp
+  SingularModes<T> modes;         ///< for tsvd
+  bool measure_gap = false;
+  OperatingPoint point;  ///< point.iterations = K
 
   [[nodiscard]] std::size_t pixels() const noexcept { return a.cols; }
 };

@@ -6,7 +6,10 @@ namespace compueye::recon::core {
 
 template <class T>
 FrameSamples<T>::FrameSamples(const FrameProblem<T>& problem, Workspace& workspace) noexcept
-    : problem_(&problem), values_(workspace.take<T>(problem.a.rows)), weights_(workspace.take<T>(problem.a.rows)) {}
+    : problem_(&problem),
+      values_(workspace.take<T>(problem.a.rows)),
+      weights_(workspace.take<T>(problem.a.rows)),
+      operator_scratch_(workspace.take<T>(problem.a.scratch_size())) {}
 
 template <class T>
 bool FrameSamples<T>::gather(const float* y, const float* weights) noexcept {
@@ -26,7 +29,7 @@ bool FrameSamples<T>::gather(const float* y, const float* weights) noexcept {
 
 template <class T>
 void FrameSamples<T>::residual(const T* x, T* residual) const noexcept {
-  forward(problem_->a, x, residual);
+  forward(x, residual);
   for (std::size_t i = 0; i < problem_->a.rows; ++i) {
     residual[i] = weights_[i] > T(0) ? values_[i] - residual[i] : T(0);
   }

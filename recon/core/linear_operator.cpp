@@ -68,14 +68,30 @@ COMPUEYE_MULTIVERSION void four_rows(const double* a, std::size_t stride, const 
 }
 
 template <class T>
-void forward_of(const LinearOperator<T>& a, const T* x, T* y) noexcept {
-  if (a.kind == OperatorKind::csr) return csr_forward_clone(a, x, y);
+void forward_of(const LinearOperator<T>& a, const T* x, T* y, T* scratch) noexcept {
+  switch (a.kind) {
+    case OperatorKind::running_sums:
+    case OperatorKind::running_sums_symmetric:
+      return forward(a.sums, x, y, scratch);
+    case OperatorKind::csr:
+      return csr_forward_clone(a, x, y);
+    case OperatorKind::dense:
+      break;
+  }
   for (std::size_t m = 0; m < a.rows; ++m) y[m] = dot(a.values + m * a.cols, x, a.cols);
 }
 
 template <class T>
-void adjoint_of(const LinearOperator<T>& a, const T* y, T* x) noexcept {
-  if (a.kind == OperatorKind::csr) return csr_adjoint(a, y, x);
+void adjoint_of(const LinearOperator<T>& a, const T* y, T* x, T* scratch) noexcept {
+  switch (a.kind) {
+    case OperatorKind::running_sums:
+    case OperatorKind::running_sums_symmetric:
+      return adjoint_accumulate(a.sums, y, x, scratch);
+    case OperatorKind::csr:
+      return csr_adjoint(a, y, x);
+    case OperatorKind::dense:
+      break;
+  }
   std::size_t m = 0;
   for (; m + 4 <= a.rows; m += 4) four_rows(a.values + m * a.cols, a.cols, y + m, x, a.cols);
   for (; m < a.rows; ++m) accumulate(a.values + m * a.cols, y[m], x, a.cols);
@@ -83,17 +99,17 @@ void adjoint_of(const LinearOperator<T>& a, const T* y, T* x) noexcept {
 
 }  // namespace
 
-void forward(const LinearOperator<float>& a, const float* x, float* y) noexcept {
-  forward_of(a, x, y);
+void forward(const LinearOperator<float>& a, const float* x, float* y, float* scratch) noexcept {
+  forward_of(a, x, y, scratch);
 }
-void forward(const LinearOperator<double>& a, const double* x, double* y) noexcept {
-  forward_of(a, x, y);
+void forward(const LinearOperator<double>& a, const double* x, double* y, double* scratch) noexcept {
+  forward_of(a, x, y, scratch);
 }
-void adjoint_accumulate(const LinearOperator<float>& a, const float* y, float* x) noexcept {
-  adjoint_of(a, y, x);
+void adjoint_accumulate(const LinearOperator<float>& a, const float* y, float* x, float* scratch) noexcept {
+  adjoint_of(a, y, x, scratch);
 }
-void adjoint_accumulate(const LinearOperator<double>& a, const double* y, double* x) noexcept {
-  adjoint_of(a, y, x);
+void adjoint_accumulate(const LinearOperator<double>& a, const double* y, double* x, double* scratch) noexcept {
+  adjoint_of(a, y, x, scratch);
 }
 
 }  // namespace compueye::recon::core

@@ -4,11 +4,12 @@
 #include <cstdint>
 
 #include "recon/core/frame_info.hpp"
+#include "recon/core/running_sums.hpp"
 
 namespace compueye::recon::core {
 
 /// A (rows x cols) as the frame path sees it: a view of tables that somebody else owns.
-/// dense: values row-major. csr: row m holds entries row_start[m] .. row_start[m+1]-1.
+/// dense: values row-major. csr: row m holds entries row_start[m] .. row_start[m+1]-1. Else: core/running_sums.hpp.
 template <class T>
 struct LinearOperator {
   OperatorKind kind = OperatorKind::dense;
@@ -17,14 +18,18 @@ struct LinearOperator {
   const T* values = nullptr;
   const std::uint32_t* row_start = nullptr;
   const std::int32_t* columns = nullptr;
+  RunningSums<T> sums;
+
+  /// Elements of T that forward() and adjoint_accumulate() want as scratch; none for dense and csr.
+  [[nodiscard]] std::size_t scratch_size() const noexcept { return sums.tables == 0 ? 0 : sums.scratch_size(); }
 };
 
 /// y = A x
-void forward(const LinearOperator<float>& a, const float* x, float* y) noexcept;
-void forward(const LinearOperator<double>& a, const double* x, double* y) noexcept;
+void forward(const LinearOperator<float>& a, const float* x, float* y, float* scratch) noexcept;
+void forward(const LinearOperator<double>& a, const double* x, double* y, double* scratch) noexcept;
 
-/// x += A' y. Rows are added in ascending order.
-void adjoint_accumulate(const LinearOperator<float>& a, const float* y, float* x) noexcept;
-void adjoint_accumulate(const LinearOperator<double>& a, const double* y, double* x) noexcept;
+/// x += A' y. Dense and sparse rows are added in ascending order.
+void adjoint_accumulate(const LinearOperator<float>& a, const float* y, float* x, float* scratch) noexcept;
+void adjoint_accumulate(const LinearOperator<double>& a, const double* y, double* x, double* scratch) noexcept;
 
 }  // namespace compueye::recon::core

@@ -55,9 +55,10 @@ void WeightedStep<T>::substitute() noexcept {
 }
 
 template <class T>
-void WeightedStep<T>::apply(T* v) noexcept {
+void WeightedStep<T>::apply(T* v, const T* shift) noexcept {
   const std::size_t rows = problem_->a.rows;
   samples_.residual(v, residual_);
+  for (std::size_t i = 0; shift != nullptr && i < rows; ++i) residual_[i] -= shift[i];
   if (reweighted_ > 0) substitute();
   flush_tiny(residual_, rows);
   multiply(problem_->inverse, residual_, correction_);
@@ -66,10 +67,10 @@ void WeightedStep<T>::apply(T* v) noexcept {
   }
   flush_tiny(correction_, rows);
   if (problem_->metric.is_identity()) {
-    adjoint_accumulate(problem_->a, correction_, v);
+    samples_.adjoint_accumulate(correction_, v);
   } else {
     for (std::size_t k = 0; k < problem_->pixels(); ++k) smooth_[k] = T(0);
-    adjoint_accumulate(problem_->a, correction_, smooth_);
+    samples_.adjoint_accumulate(correction_, smooth_);
     apply_inverse(problem_->metric, smooth_, coefficients_, scratch_);
     for (std::size_t k = 0; k < problem_->pixels(); ++k) v[k] += smooth_[k];
   }

@@ -28,8 +28,12 @@ class WeightedStep {
   /// from one.
   [[nodiscard]] bool begin(const float* y, const float* weights) noexcept;
 
-  /// v becomes x.
-  void apply(T* v) noexcept;
+  /// v becomes x. With a `shift` of problem.a.rows values, which is nought at missing channels, y - shift takes the
+  /// place of y.
+  void apply(T* v, const T* shift = nullptr) noexcept;
+
+  /// (A K0^-1 A' + rho W^-1)^-1 (y - A v) of the last apply(), which is W (y - A x) / rho: one value a seeing row.
+  [[nodiscard]] const T* correction() const noexcept { return correction_; }
 
   [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return samples_; }
   /// problem.a.rows values that are free between calls of apply().

@@ -27,8 +27,8 @@ Matrix fourier_matrix(int n) {
   for (int r = 0; r < n; ++r) {
     f(0, r) = std::sqrt(1.0 / n);
     for (int k = 1; 2 * k < n; ++k) {
-      f(2 * k - 1, r) = std::sqrt(2.0 / n) * std::cos(2.0 * std::numbers::pi * k * r / n);
-      f(2 * k, r) = std::sqrt(2.0 / n) * std::sin(2.0 * std::numbers::pi * k * r / n);
+      f(Eigen::Index{2} * k - 1, r) = std::sqrt(2.0 / n) * std::cos(2.0 * std::numbers::pi * k * r / n);
+      f(Eigen::Index{2} * k, r) = std::sqrt(2.0 / n) * std::sin(2.0 * std::numbers::pi * k * r / n);
     }
     if (n % 2 == 0) f(n - 1, r) = (r % 2 == 0 ? 1.0 : -1.0) * std::sqrt(1.0 / n);
   }
@@ -67,7 +67,8 @@ Matrix kronecker(const Matrix& a, const Matrix& b) {
 Matrix wavelet_matrix(BasisKind basis, int image_rows, int image_cols) {
   const std::vector<double> low = low_pass(basis);
   const int taps = static_cast<int>(low.size());
-  Matrix psi = Matrix::Identity(image_rows * image_cols, image_rows * image_cols);
+  const Eigen::Index pixels = Eigen::Index{image_rows} * image_cols;
+  Matrix psi = Matrix::Identity(pixels, pixels);
   for (int rows = image_rows, cols = image_cols; rows % 2 == 0 && cols % 2 == 0 && rows >= taps && cols >= taps;
        rows /= 2, cols /= 2) {
     Matrix down = Matrix::Identity(image_rows, image_rows), across = Matrix::Identity(image_cols, image_cols);
@@ -84,11 +85,11 @@ Matrix wavelet_matrix(BasisKind basis, int image_rows, int image_cols) {
 }
 
 Matrix difference_matrix(int image_rows, int image_cols) {
-  const int n = image_rows * image_cols;
+  const Eigen::Index n = Eigen::Index{image_rows} * image_cols;
   Matrix d = Matrix::Zero(2 * n, n);
   for (int r = 0; r < image_rows; ++r) {
     for (int c = 0; c < image_cols; ++c) {
-      const int p = r * image_cols + c;
+      const Eigen::Index p = Eigen::Index{r} * image_cols + c;
       if (c + 1 < image_cols) {
         d(p, p) = -1.0;
         d(p, p + 1) = 1.0;

@@ -29,7 +29,7 @@ Response scaled(const Response& a, double factor) {
 }
 
 double rule(const Response& a, BasisKind basis, double sigma, SolverKind solver = SolverKind::admm) {
-  return lambda_by_rule(a, solver, basis, sigma).value();
+  return lambda_by_rule(a, 1, a.cols(), solver, basis, sigma).value();
 }
 
 /// Samples of one bright block on black, which is sparse in differences.
@@ -74,6 +74,9 @@ TEST_CASE("the rule's scales are a median column norm and a mean column sum") {
   CHECK(rule(a, BasisKind::identity, 0.5) == doctest::Approx(1.1 * 0.5 * 2.0));
   CHECK(rule(a, BasisKind::dct, 0.5) == doctest::Approx(0.002 * 0.5 * 10.0 / 3.0));
   CHECK(rule(a, BasisKind::identity, 0.7, SolverKind::tikhonov) == doctest::Approx(4.0));
+  CHECK(rule(a, BasisKind::identity, 0.7, SolverKind::tsvd) == doctest::Approx(4.0));
+  CHECK(rule(a, BasisKind::identity, 0.5, SolverKind::omp) == rule(a, BasisKind::identity, 0.5));
+  CHECK(rule(a, BasisKind::dct, 0.5, SolverKind::omp) > 10.0 * rule(a, BasisKind::dct, 0.5));
 }
 
 TEST_CASE("lambda follows the unit of the samples as the objective does") {
@@ -92,7 +95,7 @@ TEST_CASE("the rule refuses a sigma that is none, and survives an eye that sees 
   const auto blind = Response::from_csr(2, 3, {0, 0, 0}, {}, {}).value();
   CHECK(rule(blind, BasisKind::dct, 0.1) > 0.0);
   for (const double sigma : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
-    const auto lambda = lambda_by_rule(blind, SolverKind::admm, BasisKind::dct, sigma);
+    const auto lambda = lambda_by_rule(blind, 1, 3, SolverKind::admm, BasisKind::dct, sigma);
     REQUIRE_FALSE(lambda.has_value());
     CHECK(lambda.error().code == hal::ErrorCode::out_of_range);
   }

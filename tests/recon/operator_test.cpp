@@ -33,7 +33,7 @@ struct Tables {
       });
       row_start.push_back(static_cast<std::uint32_t>(values.size()));
     }
-    return {kind, static_cast<std::size_t>(a.rows()), cols, values.data(), row_start.data(), columns.data()};
+    return {kind, static_cast<std::size_t>(a.rows()), cols, values.data(), row_start.data(), columns.data(), {}};
   }
 };
 
@@ -48,7 +48,7 @@ TEST_CASE("operators agree with dense double within the bound of their sums") {
       const auto op = tables.fill(a, kind);
       const auto x = to_float(random_vector(random, cols));
       std::vector<float> y(static_cast<std::size_t>(rows));
-      recon::core::forward(op, x.data(), y.data());
+      recon::core::forward(op, x.data(), y.data(), nullptr);
       for (int m = 0; m < rows; ++m) {
         double exact = 0.0, magnitude = 0.0;
         int terms = 0;
@@ -75,8 +75,8 @@ TEST_CASE("adjoints pass the dot test and accumulate") {
       const auto op = tables.fill(a, kind);
       const auto x = to_float(random_vector(random, cols)), u = to_float(random_vector(random, rows));
       std::vector<float> ax(u.size()), atu(x.size(), 0.0F);
-      recon::core::forward(op, x.data(), ax.data());
-      recon::core::adjoint_accumulate(op, u.data(), atu.data());
+      recon::core::forward(op, x.data(), ax.data(), nullptr);
+      recon::core::adjoint_accumulate(op, u.data(), atu.data(), nullptr);
       double left = 0.0, right = 0.0, size = 1e-30;
       for (std::size_t m = 0; m < u.size(); ++m) left += static_cast<double>(ax[m]) * static_cast<double>(u[m]);
       for (std::size_t n = 0; n < x.size(); ++n) {
@@ -85,7 +85,7 @@ TEST_CASE("adjoints pass the dot test and accumulate") {
       }
       CHECK(std::abs(left - right) <= 2e-6 * (size + rows));
       std::vector<float> twice = atu;
-      recon::core::adjoint_accumulate(op, u.data(), twice.data());
+      recon::core::adjoint_accumulate(op, u.data(), twice.data(), nullptr);
       for (std::size_t n = 0; n < x.size(); ++n) {
         CHECK(twice[n] == doctest::Approx(2.0F * atu[n]).epsilon(1e-4));
       }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/recon/every_setting.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
 
@@ -80,57 +81,79 @@ TEST_CASE("a stored factor is used when it fits and refused when stale") {
 TEST_CASE("required_bytes is exact: a solver touches its last byte and none beyond") {
   const recon::Response a = some_response();
   const std::vector<float> y(20, 1.0F);
-  for (const auto& objective : {recon::Objective{}, dct_box(0.1)}) {
-    for (const auto precision : {recon::Precision::f32, recon::Precision::f64}) {
-      for (const auto kind : {recon::SolverKind::admm, recon::SolverKind::tikhonov}) {
-        recon::Plan plan;
-        plan.solver = kind;
-        plan.precision = precision;
-        plan.iterations = 3;
-        plan.max_reweighted = 2;
-        recon::Objective used = kind == recon::SolverKind::tikhonov ? recon::Objective{} : objective;
-        used.lambda = 0.1;
-        const auto solver = Reconstructor::create(a, 6, 8, used, plan).value();
-        const std::size_t bytes = solver.required_bytes();
-        const AlignedBytes memory(bytes + 256);
-        std::memset(memory.span().data(), 0xA5, bytes + 256);
-        std::vector<float> x(48), weights(20, 1.0F);
-        weights[4] = weights[9] = 0.0F;
-        const auto info = solver.solve(y, weights, memory.span().first(bytes), x);
-        CHECK(info.health != recon::Health::invalid);
-        for (std::size_t k = bytes; k < bytes + 256; ++k) CHECK(memory.span()[k] == std::byte{0xA5});
-        bool touched = false;  // the last 64-byte piece is in use
-        for (std::size_t k = bytes - 64; k < bytes; ++k) touched = touched || memory.span()[k] != std::byte{0xA5};
-        CHECK(touched);
-        CHECK(solver.solve(y, weights, memory.span().first(bytes - 64), x).health == recon::Health::invalid);
-        CHECK(solver.solve(y, weights, memory.span().subspan(1, bytes), x).health == recon::Health::invalid);
-      }
-    }
+  for (const SolverSetting& setting : every_setting()) {
+    CAPTURE(setting.name);
+    recon::Plan plan = setting.plan;
+    plan.max_reweighted = 2;
+    const auto solver = Reconstructor::create(a, 6, 8, setting.objective, plan).value();
+    const std::size_t bytes = solver.required_bytes();
+    const AlignedBytes memory(bytes + 256);
+    std::memset(memory.span().data(), 0xA5, bytes + 256);
+    std::vector<float> x(48), weights(20, 1.0F);
+    weights[4] = weights[9] = 0.0F;
+    const auto info = solver.solve(y, weights, memory.span().first(bytes), x);
+    CHECK(info.health != recon::Health::invalid);
+    for (std::size_t k = bytes; k < bytes + 256; ++k) CHECK(memory.span()[k] == std::byte{0xA5});
+    bool touched = false;  // the last 64-byte piece is in use
+    for (std::size_t k = bytes - 64; k < bytes; ++k) touched = touched || memory.span()[k] != std::byte{0xA5};
+    CHECK(touched);
+    CHECK(solver.solve(y, weights, memory.span().first(bytes - 64), x).health == recon::Health::invalid);
+    CHECK(solver.solve(y, weights, memory.span().subspan(1, bytes), x).health == recon::Health::invalid);
   }
 }
 
 TEST_CASE("the same input gives the same bits, whatever was in the workspace before") {
   const recon::Response a = some_response();
-  const auto solver = Reconstructor::create(a, 6, 8, dct_box(0.05), {}).value();
   Random random(92);
   const auto y = to_float(random_vector(random, 20, 0, 3)), other = to_float(random_vector(random, 20, 0, 3));
-  const AlignedBytes memory(solver.required_bytes());
-  std::vector<float> first(48), second(48), between(48);
-  std::memset(memory.span().data(), 0, memory.span().size());
-  static_cast<void>(solver.solve(y, {}, memory.span(), first));
-  static_cast<void>(solver.solve(other, {}, memory.span(), between));
-  std::memset(memory.span().data(), 0xFF, memory.span().size());
-  static_cast<void>(solver.solve(y, {}, memory.span(), second));
-  CHECK(std::memcmp(first.data(), second.data(), 48 * sizeof(float)) == 0);
-  CHECK(first != between);
+  std::vector<float> weights(20, 1.0F);
+  weights[3] = 0.0F;
+  weights[11] = 0.5F;
+  for (const SolverSetting& setting : every_setting()) {
+    CAPTURE(setting.name);
+    const auto solver = Reconstructor::create(a, 6, 8, setting.objective, setting.plan).value();
+    const AlignedBytes memory(solver.required_bytes());
+    std::vector<float> first(48), second(48), between(48);
+    std::memset(memory.span().data(), 0, memory.span().size());
+    const auto before = solver.solve(y, weights, memory.span(), first);
+    static_cast<void>(solver.solve(other, {}, memory.span(), between));
+    std::memset(memory.span().data(), 0xFF, memory.span().size());
+    const auto after = solver.solve(y, weights, memory.span(), second);
+    CHECK(std::memcmp(first.data(), second.data(), 48 * sizeof(float)) == 0);
+    CHECK(before.duality_gap == after.duality_gap);
+    CHECK(before.objective == after.objective);
+    CHECK(first != between);
+  }
+}
+
+TEST_CASE("the gap is measured when asked for, and costs its memory only then") {
+  const recon::Response a = some_response();
+  const std::vector<float> y(20, 1.0F);
+  for (SolverSetting setting : every_setting()) {
+    CAPTURE(setting.name);
+    const auto kind = setting.plan.solver;
+    const bool has_gap = kind != recon::SolverKind::tikhonov && kind != recon::SolverKind::tsvd &&
+                         kind != recon::SolverKind::omp &&
+                         !(setting.objective.epsilon && setting.objective.constraint == recon::ConstraintKind::box);
+    const auto with = Reconstructor::create(a, 6, 8, setting.objective, setting.plan).value();
+    setting.plan.measure_gap = false;
+    const auto without = Reconstructor::create(a, 6, 8, setting.objective, setting.plan).value();
+    const SolvedFrame measured = solve_frame(with, y), plain = solve_frame(without, y);
+    CHECK((measured.info.duality_gap >= 0.0) == has_gap);
+    CHECK(plain.info.duality_gap == -1.0);
+    CHECK(measured.x == plain.x);
+    const bool by_gap = kind == recon::SolverKind::fista || kind == recon::SolverKind::chambolle_pock;
+    CHECK((with.required_bytes() > without.required_bytes()) == (has_gap && !by_gap));  // those need it themselves
+  }
 }
 
 TEST_CASE("a dark frame stays dark and quick: no subnormal numbers in the answer") {
   const recon::Response a = some_response();
-  for (const auto& objective : {recon::Objective{}, dct_box(0.05)}) {
-    recon::Plan plan;
+  for (const SolverSetting& setting : every_setting()) {
+    CAPTURE(setting.name);
+    recon::Plan plan = setting.plan;
     plan.iterations = 2000;
-    const auto solver = Reconstructor::create(a, 6, 8, objective, plan).value();
+    const auto solver = Reconstructor::create(a, 6, 8, setting.objective, plan).value();
     for (const float level : {0.0F, 1e-12F, 1e-25F, 1e-40F}) {
       const SolvedFrame frame = solve_frame(solver, std::vector<float>(20, level));
       CHECK(frame.info.health != recon::Health::invalid);

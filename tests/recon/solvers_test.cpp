@@ -1,14 +1,15 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "recon/option_names.hpp"
 #include "recon/reference/reference_solver.hpp"
 #include "recon/solver_table.hpp"
-#include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
+#include "tests/recon/solver_problems.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;
@@ -19,115 +20,155 @@ using recon::SolverKind;
 
 namespace {
 
-struct Problem {
-  std::string name;
-  Response a;
-  int rows, cols;
+constexpr std::array l1_solvers{SolverKind::admm, SolverKind::adm, SolverKind::fista, SolverKind::chambolle_pock};
+
+struct Samples {
+  std::vector<double> y;
+  std::vector<double> weights;
 };
 
-Response with_rows(const Response& a, const std::vector<std::int32_t>& order, const std::vector<double>& scale) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    std::vector<double> row(static_cast<std::size_t>(a.cols()), 0.0);
-    if (order[i] >= 0) {
-      a.for_each_in_row(order[i], [&](std::int32_t n, double v) { row[static_cast<std::size_t>(n)] = v * scale[i]; });
-    }
-    values.insert(values.end(), row.begin(), row.end());
+/// A sparse scene with noise; a fifth of the channels weigh nought or a half when `weighted`, and the missing ones read
+/// NaN.
+Samples samples_of(const SolverProblem& problem, Random& random, bool weighted) {
+  std::vector<double> truth(static_cast<std::size_t>(problem.rows * problem.cols), 0.0);
+  Samples samples;
+  samples.y.resize(static_cast<std::size_t>(problem.a.rows()));
+  samples.weights.assign(samples.y.size(), 1.0);
+  for (double& v : truth) v = random.uniform() < 0.3 ? random.uniform(0.2, 1.0) : 0.0;
+  problem.a.forward(truth, samples.y);
+  for (double& v : samples.y) v = v == 0.0 ? 0.0 : static_cast<float>(v + 0.05 * random.normal());  // blind rows read 0
+  for (std::size_t m = 0; weighted && m < samples.y.size(); m += 5) {
+    samples.weights[m] = m % 2 == 0 ? 0.0 : 0.5;
+    if (m % 2 == 0) samples.y[m] = std::nan("");
   }
-  return Response::from_dense(static_cast<int>(order.size()), a.cols(), values).value();
+  return samples;
 }
 
-Response without_columns(const Response& a, int every) {
-  std::vector<double> values(static_cast<std::size_t>(a.rows()) * static_cast<std::size_t>(a.cols()), 0.0);
-  for (int m = 0; m < a.rows(); ++m) {
-    a.for_each_in_row(m, [&](std::int32_t n, double v) {
-      if (n % every != 0)
-        values[static_cast<std::size_t>(m) * static_cast<std::size_t>(a.cols()) + static_cast<std::size_t>(n)] = v;
-    });
+/// The objective at x = 0: what a gap is small against.
+double objective_of_nothing(const Samples& samples) {
+  double sum = 0.0;
+  for (std::size_t m = 0; m < samples.y.size(); ++m) {
+    if (samples.weights[m] > 0.0) sum += 0.5 * samples.weights[m] * samples.y[m] * samples.y[m];
   }
-  return Response::from_dense(a.rows(), a.cols(), values).value();
+  return sum;
 }
 
-/// Dense, sparse, wide, tall, duplicated rows, zero rows, zero columns, badly scaled rows, nearly parallel rows.
-std::vector<Problem> problems() {
-  Random random(71);
-  std::vector<Problem> all;
-  all.push_back({"dense wide", random_response(random, 12, 36, 1.0), 6, 6});
-  all.push_back({"sparse wide", random_response(random, 16, 48, 0.15), 6, 8});
-  all.push_back({"dense tall", random_response(random, 50, 20, 1.0), 4, 5});
-  all.push_back({"sparse tall", random_response(random, 60, 24, 0.1), 4, 6});
-  const Response base = random_response(random, 10, 30, 0.5);
-  const std::vector<std::int32_t> twice{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0, 1, 2, 3, 3, 3};
-  all.push_back({"duplicated rows", with_rows(base, twice, std::vector<double>(16, 1.0)), 5, 6});
-  const std::vector<std::int32_t> blind{0, -1, 2, -1, 4, 5, -1, 7, 8, 9};
-  all.push_back({"zero rows", with_rows(base, blind, std::vector<double>(10, 1.0)), 5, 6});
-  all.push_back({"zero columns", without_columns(random_response(random, 14, 30, 0.7), 4), 5, 6});
-  all.push_back({"scaled rows", with_rows(base, {0, 1, 2, 3, 4, 5}, {1, 10, 0.1, 3, 0.03, 1}), 5, 6});
-  return all;
+double lambda_of(BasisKind basis, ConstraintKind constraint) {
+  const double by_constraint = constraint == ConstraintKind::none ? 0.1 : 0.2;
+  return basis == BasisKind::identity && constraint == ConstraintKind::nonnegative ? 0.05 : by_constraint;
 }
 
-struct Setting {
-  BasisKind basis;
-  ConstraintKind constraint;
-  double lambda;
-};
+/// The objective that a solver's float32 picture has, in double.
+double reached_by(const SolverProblem& problem, const recon::Objective& objective, const Samples& samples,
+                  const SolvedFrame& frame) {
+  return recon::reference::objective_value(problem.a, problem.rows, problem.cols, objective, samples.y, samples.weights,
+                                           std::vector<double>(frame.x.begin(), frame.x.end()));
+}
+
+/// False when a method without a factor has not converged and says so.
+bool check_against(const recon::reference::ReferenceResult& best, const SolverProblem& problem,
+                   const recon::Objective& objective, const Samples& samples, SolverKind kind, int iterations,
+                   recon::Precision precision) {
+  CAPTURE(recon::name(kind));
+  recon::Plan plan;
+  plan.solver = kind;
+  plan.precision = precision;
+  plan.iterations = iterations;
+  plan.max_reweighted = problem.a.rows();
+  plan.measure_gap = true;
+  const auto solver = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan);
+  REQUIRE(solver.has_value());
+  const SolvedFrame frame = solve_frame(*solver, to_float(samples.y), to_float(samples.weights));
+  const double reached = reached_by(problem, objective, samples, frame);
+  CHECK(reached >= best.objective * (1.0 - 1e-6) - 1e-7);
+  CHECK(frame.info.objective == doctest::Approx(reached).epsilon(1e-4));
+  CHECK(frame.info.iterations == iterations);
+  // Weak duality: the gap never promises more than is true.
+  CHECK(frame.info.duality_gap >= reached - best.objective - 2e-6 * best.objective - 1e-7);
+  const bool first_order = kind == SolverKind::fista || kind == SolverKind::chambolle_pock;
+  const bool close = reached <= best.objective * (1.0 + 1e-4) + 1e-7;
+  const bool settled = frame.info.health == recon::Health::converged;
+  CHECK((settled || first_order));
+  CHECK((close || !settled));
+  if (!close) return false;
+  CHECK(frame.info.duality_gap <= 5e-3 * best.objective + 1e-6);
+  return true;
+}
 
 }  // namespace
 
 TEST_CASE("l1 solvers reach the reference's objective to 1e-4 on every kind of problem, basis and constraint") {
   Random random(72);
-  int compared = 0;
-  for (const Problem& problem : problems()) {
-    for (const Setting& setting : {Setting{BasisKind::identity, ConstraintKind::none, 0.2},
-                                   {BasisKind::identity, ConstraintKind::nonnegative, 0.05},
-                                   {BasisKind::identity, ConstraintKind::box, 0.5},
-                                   {BasisKind::dct, ConstraintKind::none, 0.1},
-                                   {BasisKind::dct, ConstraintKind::nonnegative, 0.2},
-                                   {BasisKind::dct, ConstraintKind::box, 0.02},
-                                   {BasisKind::haar, ConstraintKind::none, 0.1},
-                                   {BasisKind::haar, ConstraintKind::box, 0.05},
-                                   {BasisKind::db4, ConstraintKind::nonnegative, 0.05},
-                                   {BasisKind::dft, ConstraintKind::none, 0.2},
-                                   {BasisKind::dft, ConstraintKind::box, 0.1},
-                                   {BasisKind::tv, ConstraintKind::none, 0.1},
-                                   {BasisKind::tv, ConstraintKind::nonnegative, 0.05},
-                                   {BasisKind::tv, ConstraintKind::box, 0.2}}) {
-      CAPTURE(problem.name);
-      CAPTURE(static_cast<int>(setting.basis));
-      CAPTURE(static_cast<int>(setting.constraint));
-      const int n = problem.rows * problem.cols;
-      std::vector<double> truth(static_cast<std::size_t>(n), 0.0), y(static_cast<std::size_t>(problem.a.rows()));
-      for (double& v : truth) v = random.uniform() < 0.3 ? random.uniform(0.2, 1.0) : 0.0;
-      problem.a.forward(truth, y);
-      for (double& v : y) v = v == 0.0 ? 0.0 : static_cast<float>(v + 0.05 * random.normal());  // blind rows read 0
-      recon::Objective objective;
-      objective.basis = setting.basis;
-      objective.constraint = setting.constraint;
-      objective.lambda = setting.lambda;
-      const auto best = recon::reference::solve_reference(problem.a, problem.rows, problem.cols, objective, y);
-      REQUIRE(best.converged);
-      for (const auto solver_kind : {SolverKind::admm, SolverKind::fista, SolverKind::chambolle_pock}) {
-        if (!recon::supports(solver_kind, setting.basis, setting.constraint)) continue;
-        CAPTURE(recon::name(solver_kind));
-        recon::Plan plan;
-        plan.solver = solver_kind;
-        plan.iterations = 5000;
-        const auto solver = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan);
-        REQUIRE(solver.has_value());
-        const SolvedFrame frame = solve_frame(*solver, to_float(y));
-        const double reached =
-            recon::reference::objective_value(problem.a, problem.rows, problem.cols, objective, y, {},
-                                              std::vector<double>(frame.x.begin(), frame.x.end()));
-        CHECK(reached <= best.objective * (1.0 + 1e-4) + 1e-7);
-        CHECK(reached >= best.objective * (1.0 - 1e-6) - 1e-7);
-        CHECK(frame.info.objective == doctest::Approx(reached).epsilon(1e-4));
-        CHECK(frame.info.iterations == 5000);
-        CHECK(frame.info.health == recon::Health::converged);
-        ++compared;
+  int compared = 0, unfinished = 0;
+  bool weighted = false;
+  for (const SolverProblem& problem : solver_problems()) {
+    CAPTURE(problem.name);
+    for (const auto& basis : recon::basis_names()) {
+      CAPTURE(basis.name);
+      for (const auto& constraint : recon::constraint_names()) {
+        CAPTURE(constraint.name);
+        weighted = !weighted;
+        CAPTURE(weighted);
+        const Samples samples = samples_of(problem, random, weighted);
+        recon::Objective objective;
+        objective.basis = basis.kind;
+        objective.constraint = constraint.kind;
+        objective.lambda = lambda_of(basis.kind, constraint.kind);
+        const auto best = recon::reference::solve_reference(problem.a, problem.rows, problem.cols, objective, samples.y,
+                                                            samples.weights);
+        REQUIRE(best.converged);
+        REQUIRE(best.gap <= 1e-10 * std::max(1.0, objective_of_nothing(samples)));
+        for (const SolverKind kind : l1_solvers) {
+          if (!recon::supports(kind, basis.kind, constraint.kind)) continue;
+          ++compared;
+          if (check_against(best, problem, objective, samples, kind, 5000, recon::Precision::f32)) continue;
+          ++unfinished;
+          CHECK(problem.name == "scaled rows");  // by 300, which is what a first-order method pays for
+          CHECK(check_against(best, problem, objective, samples, kind, 100'000, recon::Precision::f64));
+        }
       }
     }
   }
-  CHECK(compared >= 40);
+  // 9 problems; admm and cp on 18 pairs, adm and fista on 3 with pixels and 4 orthonormal bases without a constraint.
+  CHECK(compared == 9 * (2 * 18 + 2 * 7));
+  CHECK(unfinished <= 8);
+}
+
+TEST_CASE("what goes with what is what the solvers can do") {
+  using recon::supports;
+  int pairs = 0;
+  for (const auto& basis : recon::basis_names()) {
+    for (const auto& constraint : recon::constraint_names()) {
+      const bool pixels = basis.kind == BasisKind::identity, tv = basis.kind == BasisKind::tv;
+      const bool none = constraint.kind == ConstraintKind::none;
+      CHECK(supports(SolverKind::admm, basis.kind, constraint.kind));
+      CHECK(supports(SolverKind::chambolle_pock, basis.kind, constraint.kind));
+      CHECK(supports(SolverKind::adm, basis.kind, constraint.kind) == (pixels || (none && !tv)));
+      CHECK(supports(SolverKind::fista, basis.kind, constraint.kind) == (pixels || (none && !tv)));
+      CHECK(supports(SolverKind::omp, basis.kind, constraint.kind) == (none && !tv));
+      CHECK(supports(SolverKind::tsvd, basis.kind, constraint.kind) == (none && pixels));
+      CHECK(supports(SolverKind::tikhonov, basis.kind, constraint.kind) == (none && pixels));
+      ++pairs;
+      for (const auto& solver : recon::solver_names()) {
+        recon::Objective objective;
+        objective.basis = basis.kind;
+        objective.constraint = constraint.kind;
+        objective.lambda = 0.1;
+        recon::Plan plan;
+        plan.solver = solver.kind;
+        const auto a = Response::from_dense(4, 6, std::vector<double>(24, 0.5));
+        const auto made = recon::Reconstructor::create(*a, 2, 3, objective, plan);
+        CHECK(made.has_value() == supports(solver.kind, basis.kind, constraint.kind));
+        if (made) continue;
+        CHECK(made.error().code == hal::ErrorCode::usage);
+        CHECK(made.error().sentence.find(recon::solvers_for(basis.kind, constraint.kind)) != std::string::npos);
+      }
+    }
+  }
+  CHECK(pairs == 18);
+  CHECK(recon::solvers_for(BasisKind::dct, ConstraintKind::box) == "admm, cp");
+  CHECK(recon::solvers_for(BasisKind::identity, ConstraintKind::nonnegative) == "admm, adm, cp, fista");
+  CHECK(recon::solvers_for(BasisKind::haar, ConstraintKind::none) == "admm, adm, cp, fista, omp");
 }
 
 TEST_CASE("tikhonov is the closed form, in both precisions") {

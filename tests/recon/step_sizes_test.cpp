@@ -5,7 +5,6 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "recon/solver_table.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
@@ -58,32 +57,4 @@ TEST_CASE("primal-dual steps keep the preconditioned operator's norm at one or b
       CHECK(norm(scaled) <= 1.0 + 1e-12);
     }
   }
-}
-
-TEST_CASE("what goes with what") {
-  using recon::BasisKind;
-  using recon::ConstraintKind;
-  using recon::SolverKind;
-  for (const auto basis : {BasisKind::identity, BasisKind::dct, BasisKind::haar, BasisKind::tv}) {
-    for (const auto constraint : {ConstraintKind::none, ConstraintKind::nonnegative, ConstraintKind::box}) {
-      CHECK(recon::supports(SolverKind::admm, basis, constraint));
-      CHECK(recon::supports(SolverKind::chambolle_pock, basis, constraint));
-      recon::Plan plan;
-      plan.solver = SolverKind::fista;
-      plan.iterations = 1;
-      recon::Objective objective;
-      objective.basis = basis;
-      objective.constraint = constraint;
-      const auto a = recon::Response::from_dense(2, 4, {1, 0, 1, 0, 0, 1, 0, 1}).value();
-      const auto made = recon::Reconstructor::create(a, 2, 2, objective, plan);
-      CHECK(made.has_value() == recon::supports(SolverKind::fista, basis, constraint));
-      if (made) continue;
-      CHECK(made.error().code == hal::ErrorCode::usage);
-      CHECK(made.error().sentence.find("admm, cp") != std::string::npos);
-    }
-  }
-  CHECK(recon::supports(SolverKind::fista, BasisKind::identity, ConstraintKind::box));
-  CHECK_FALSE(recon::supports(SolverKind::fista, BasisKind::dct, ConstraintKind::box));
-  CHECK_FALSE(recon::supports(SolverKind::fista, BasisKind::tv, ConstraintKind::none));
-  CHECK_FALSE(recon::supports(SolverKind::tikhonov, BasisKind::dct, ConstraintKind::none));
 }

@@ -298,7 +298,7 @@ std::vector<KeySpec> problem_keys() {
        .type = choice,
        .choices = words(solver_names()),
        .fallback = V{std::string("admm")},
-       .meaning = "iterative with an l1 term, or linear with an l2 term",
+       .meaning = "docs/solvers.md says which to use when",
        .store = [](Board& b, const V& v) { b.reconstruction.solver = kind_of(solver_names(), v); }},
       {.section = "reconstruction",
        .name = "basis",

@@ -102,13 +102,22 @@ Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, con
   return found;
 }
 
+/// The solver knows of lambda and response, people of the options and files behind them.
+std::string place_of(const ReconstructOptions& o, const std::string& place) {
+  if (o.rank && place == "rank") return "--rank";
+  if (o.rho && place == "rho") return "--rho";
+  if (o.lambda && place == "lambda") return "--lambda";
+  return o.response;
+}
+
 Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatement problem, const Inputs& inputs,
                                     const recon::Progress& progress) {
   const recon::Response& a = *inputs.response;
   problem.objective.lambda = o.lambda.value_or(0.0);
   problem.plan.max_reweighted = inputs.frames.max_reweighted;
   if (o.sigma) {
-    const auto lambda = recon::lambda_by_rule(a, problem.plan.solver, problem.objective.basis, *o.sigma);
+    const auto lambda = recon::lambda_by_rule(a, problem.size.rows, problem.size.cols, problem.plan.solver,
+                                              problem.objective.basis, *o.sigma);
     if (!lambda) return tl::unexpected(lambda.error());
     problem.objective.lambda = *lambda;
   }
@@ -121,8 +130,7 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatemen
   }
   auto made = recon::Reconstructor::create(a, problem.size.rows, problem.size.cols, problem.objective, problem.plan,
                                            std::move(factor), progress);
-  // The solver knows of lambda and response, people of the options and files behind them.
-  if (!made && made.error().code != ErrorCode::interrupted) made.error().place = o.response;
+  if (!made && made.error().code != ErrorCode::interrupted) made.error().place = place_of(o, made.error().place);
   return made;
 }
 

@@ -9,6 +9,7 @@
 
 #include "firmware/app/board/reconstruction_names.hpp"
 #include "firmware/app/options/option_checks.hpp"
+#include "firmware/app/reconstruct/solver_options.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -55,9 +56,9 @@ void add_files(CLI::App& command, ReconstructOptions& o) {
 }
 
 void add_problem(CLI::App& command, ReconstructOptions& o) {
-  command.add_option("--solver", o.solver, "admm (default) or tikhonov")
+  command.add_option("--solver", o.solver, "admm (default), adm, cp, fista, omp, tikhonov or tsvd")
       ->type_name("NAME")
-      ->check(one_of(names_in(solver_names()), {"pdhg", "adm", "tsvd", "omp"}));
+      ->check(one_of(names_in(solver_names()), {"pdhg"}));
   command.add_option("--basis", o.basis, "where the picture is sparse: identity (default), dct, haar, db4, dft or tv")
       ->type_name("NAME")
       ->check(one_of(names_in(basis_names()), {}));
@@ -83,49 +84,36 @@ void add_problem(CLI::App& command, ReconstructOptions& o) {
                 "choose among six multiples of the rule's lambda by the risk that the first frame shows; costs twelve "
                 "frames")
       ->needs(sigma);
+  command
+      .add_option("--epsilon", o.epsilon,
+                  "adm: min ||Psi x||_1 subject to ||W^(1/2)(Ax-y)|| <= V; omp: stop there; in white pixels")
+      ->type_name("V")
+      ->check(number_where(not_negative, "a finite number of 0 or more"));
+  command.add_option("--rank", o.rank, "tsvd: how many singular values to keep (with --sigma: by rule)")
+      ->type_name("R")
+      ->check(whole_number(1, 1'000'000));
 }
 
 void add_plan(CLI::App& command, ReconstructOptions& o) {
-  command.add_option("--iterations", o.iterations, "exactly this many a frame (default 100)")
+  command.add_option("--iterations", o.iterations, "exactly this many a frame (default 100); omp: elements, at most")
       ->type_name("K")
       ->check(whole_number(1, 1'000'000));
-  command.add_option("--rho", o.rho, "ADMM penalty (default: by rule)")
+  command.add_option("--rho", o.rho, "penalty of admm and adm (default: by rule)")
       ->type_name("V")
       ->check(number_where([](double v) { return v > 0.0; }, "a finite number above 0"));
-  command.add_option("--relaxation", o.relaxation, "of ADMM (default 1.7)")
+  command.add_option("--relaxation", o.relaxation, "of admm and cp (default 1.7)")
       ->type_name("V")
       ->check(number_where([](double v) { return v > 0.0 && v < 2.0; }, "a number above 0 and below 2"));
   command.add_option("--precision", o.precision, "f32 (default) or f64")
       ->type_name("NAME")
       ->check(one_of({"f32", "f64"}, {}));
+  command.add_flag("--as-published", o.as_published,
+                   "adm as YALL1 v1.4 does it, for comparison: it may stop where there is no solution");
   command.add_flag("--json", o.json, "print one object with every figure");
 }
 
 hal::Result<void> usage(const char* option, std::string sentence) {
   return hal::fail(hal::ErrorCode::usage, option, std::move(sentence));
-}
-
-hal::Result<void> check_penalty(const ReconstructOptions& o) {
-  if (o.lambda || o.sigma) return {};
-  return usage("--lambda or --sigma",
-               "is needed: --sigma takes the noise of one sample in white pixels and finds lambda by rule, --lambda "
-               "sets the weight of the penalty by hand");
-}
-
-hal::Result<void> check_tikhonov(const ReconstructOptions& o) {
-  if (o.solver != "tikhonov") return {};
-  if (o.basis != "identity" || o.nonnegative || !o.box.empty()) {
-    return usage("--solver tikhonov",
-                 "takes --basis identity without --nonnegative and --box only; admm takes every basis with every "
-                 "constraint");
-  }
-  if (o.iterations || o.rho || o.relaxation) {
-    return usage("--solver tikhonov", "solves directly, so --iterations, --rho and --relaxation go with admm only");
-  }
-  if (o.lambda && !(*o.lambda > 0.0)) {
-    return usage("--lambda", "is 0, expected a number above 0 with tikhonov, where it is the weight of ||x||^2");
-  }
-  return {};
 }
 
 /// A file name that ends like something else is most likely two options mixed up. No ending is a device or pipe.
@@ -154,29 +142,29 @@ void add_reconstruct_options(CLI::App& command, ReconstructOptions& options) {
 }
 
 std::string reconstruct_footer() {
-  return "Solves min 1/2 ||W^(1/2)(Ax-y)||^2 + lambda ||Psi x||_1 within the constraint, tikhonov with\n"
-         "lambda/2 ||x||^2 instead. One unit of y is one fully seen pixel at white; x is in 0..1 of display white.\n\n"
-         "What goes with what:\n"
-         "  solver     basis                             constraint\n"
-         "  admm, cp   every basis                       none, --nonnegative or --box\n"
-         "  fista      identity                          none, --nonnegative or --box\n"
-         "  fista      dct, haar, db4, dft               none\n"
-         "  tikhonov   identity                          none; direct: no iterations, rho or relaxation\n"
-         "Either --lambda or --sigma, always. Weights are inverse variances relative to --sigma; with (frames, M) "
-         "they\n"
-         "change from frame to frame. A NaN in y is an error unless its weight is 0.\n"
+  return "Solves min 1/2 ||W^(1/2)(Ax-y)||^2 + lambda ||Psi x||_1 within the constraint; tikhonov with\n"
+         "lambda/2 ||x||^2 instead; adm with --epsilon: min ||Psi x||_1 within it and the constraint; omp as few\n"
+         "non-zeros of Psi x as it takes; tsvd the leading singular values only. One unit of y is one fully seen\n"
+         "pixel at white; x is in 0..1 of display white.\n\n"
+         "What goes with what:\n" +
+         solver_table_text() +
+         "docs/solvers.md says which to use when. tikhonov and tsvd solve directly: no iterations, rho or relaxation.\n"
+         "One of --lambda, --sigma, --epsilon (adm, omp) and --rank (tsvd), always. Weights are inverse variances\n"
+         "relative to --sigma; with (frames, M) they change from frame to frame. A NaN in y is an error unless its\n"
+         "weight is 0.\n"
          "Ctrl-C leaves no files behind. Exit codes: 0 done, 1 failed, 2 wrong usage.\n\n"
          "Examples:\n"
          "  compueye response --board boards/sim-8x8 --out A.mtx\n"
          "  compueye reconstruct --response A.mtx --samples y.npy --size 16x16 --box 0,1 --sigma 0.002 --png x.png\n"
+         "  compueye reconstruct --response A.mtx --samples y.npy --size 16x16 --solver adm --epsilon 0.02 "
+         "--nonnegative\n"
          "  compueye reconstruct --response A.npy --samples y.npy --size 160x160 --basis dct --box 0,1 --sigma 0.32 "
          "\\\n"
          "                       --weights w.npy --out x.npy --truth truth.npy --json";
 }
 
 hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
-  const auto checked = check_penalty(o)
-                           .and_then([&] { return check_tikhonov(o); })
+  const auto checked = check_solver_options(o)
                            .and_then([&] { return check_ending("--out", o.out, ".npy", true); })
                            .and_then([&] { return check_ending("--png", o.png, ".png", false); })
                            .and_then([&] { return check_not_input("--out", o.out, o); });
@@ -190,11 +178,16 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
     problem.objective.lo = box->lo;
     problem.objective.hi = box->hi;
   }
+  problem.objective.epsilon = o.epsilon;
   problem.plan.solver = kind_named(solver_names(), o.solver);
+  if (o.as_published) problem.plan.solver = recon::SolverKind::adm_as_published;
+  problem.plan.rank = o.rank.value_or(0);
+  problem.plan.measure_gap = true;
   problem.plan.precision = o.precision == "f64" ? recon::Precision::f64 : recon::Precision::f32;
   problem.plan.iterations = o.iterations.value_or(problem.plan.iterations);
   problem.plan.rho = o.rho.value_or(problem.plan.rho);
   problem.plan.relaxation = o.relaxation.value_or(problem.plan.relaxation);
+  if (auto pair = check_pair(problem); !pair) return tl::unexpected(std::move(pair.error()));
   return problem;
 }
 

@@ -14,9 +14,6 @@
 namespace compueye::firmware {
 namespace {
 
-std::string_view name_of(recon::OperatorKind kind) {
-  return kind == recon::OperatorKind::dense ? "dense" : "csr";
-}
 std::string_view name_of(recon::Precision precision) {
   return precision == recon::Precision::f64 ? "f64" : "f32";
 }
@@ -54,6 +51,7 @@ double mean(const ReconstructReport& report, Pick&& pick) {
 constexpr auto solve_ms = [](const FrameRecord& r) { return r.solve_ms; };
 constexpr auto objective_of = [](const FrameRecord& r) { return r.info.objective; };
 constexpr auto residual_of = [](const FrameRecord& r) { return r.info.residual; };
+constexpr auto gap_of = [](const FrameRecord& r) { return r.info.duality_gap; };
 constexpr auto nmse_of = [](const FrameRecord& r) { return r.quality ? r.quality->nmse : 0.0; };
 constexpr auto psnr_of = [](const FrameRecord& r) { return r.quality ? r.quality->psnr_db : 0.0; };
 constexpr auto ssim_of = [](const FrameRecord& r) { return r.quality ? r.quality->ssim : 0.0; };
@@ -80,6 +78,30 @@ std::string lambda_origin(const ReconstructReport& r) {
   return r.options.lambda_from_samples ? "risk" : "rule";
 }
 
+/// What says how far a solver may stay from y, and its value.
+std::string distance_name(const ReconstructReport& r) {
+  if (r.options.epsilon) return "epsilon";
+  return r.point.solver == recon::SolverKind::tsvd ? "rank" : "lambda";
+}
+
+std::string distance_text(const ReconstructReport& r) {
+  if (r.options.epsilon) return significant(*r.options.epsilon, 4);
+  if (r.point.solver == recon::SolverKind::tsvd) {
+    return grouped(r.plan.rank) + (r.options.rank ? " by hand" : " singular values: s^2 >= " + lambda_text(r));
+  }
+  return lambda_text(r);
+}
+
+bool has_gap(const ReconstructReport& r) {
+  return r.records.front().info.duality_gap >= 0.0;
+}
+
+std::string gap_text(const ReconstructReport& r) {
+  if (!has_gap(r)) return "none: this solver or problem has no dual to bound it by";
+  return significant(median(figures(r, gap_of)), 3) + (r.frames > 1 ? " (median)" : "") +
+         ", the most that the objective may lie above its optimum";
+}
+
 std::string health_text(const ReconstructReport& r) {
   return fmt::format("{} converged, {} used their budget (normal in real time)", count(r, recon::Health::converged),
                      count(r, recon::Health::budget_used));
@@ -97,7 +119,7 @@ Json outputs_json(const ReconstructReport& r) {
 }
 
 Json point_json(const recon::OperatingPoint& point) {
-  return {{"operator", name_of(point.op)},
+  return {{"operator", name(point.op)},
           {"basis", name(point.basis)},
           {"solver", name(point.solver)},
           {"precision", name_of(point.precision)},
@@ -110,6 +132,7 @@ Json objective_json(const ReconstructReport& r) {
           {"lo", box ? Json(r.objective.lo) : Json()},
           {"hi", box ? Json(r.objective.hi) : Json()},
           {"lambda", r.objective.lambda},
+          {"epsilon", r.options.epsilon ? Json(*r.options.epsilon) : Json()},
           {"lambda_by", lambda_origin(r)},
           {"sigma", r.options.sigma ? Json(*r.options.sigma) : Json()}};
 }
@@ -122,6 +145,7 @@ Json frame_json(const FrameRecord& record) {
              {"channels_used", info.channels_used},
              {"channels_reweighted", info.channels_reweighted},
              {"objective", info.objective},
+             {"duality_gap", info.duality_gap >= 0.0 ? Json(info.duality_gap) : Json()},
              {"residual", info.residual},
              {"primal_residual", info.primal_residual},
              {"dual_residual", info.dual_residual}};
@@ -139,17 +163,18 @@ std::string report_text(const ReconstructReport& r) {
   Table table({{"figure", Align::left}, {"value", Align::left}});
   table.add({"operating point",
              fmt::format("{}, {} basis, {} operator, {}, {} iterations", name(r.point.solver), name(r.point.basis),
-                         name_of(r.point.op), name_of(r.point.precision), r.point.iterations)});
+                         name(r.point.op), name_of(r.point.precision), r.point.iterations)});
   table.add({"constraint", constraint_text(r.objective)});
-  table.add({"lambda", lambda_text(r)});
-  table.add({"rho", significant(r.plan.rho, 4)});
+  table.add({distance_name(r), distance_text(r)});
+  if (recon::uses_factor(r.point.solver)) table.add({"rho", significant(r.plan.rho, 4)});
   table.add({"picture", fmt::format("{}x{} pixels from {} seeing channels of {}", r.size.rows, r.size.cols,
                                     grouped(r.seeing_channels), grouped(r.channels))});
   table.add({"frames", grouped(r.frames)});
   table.add({"set-up", duration(r.setup_s)});
-  table.add({"time a frame", significant(median(figures(r, solve_ms)), 3) + " ms (median)"});
+  table.add({"time a frame", significant(median(figures(r, solve_ms)), 3) + " ms (median, duality gap included)"});
   table.add({"memory", bytes(r.table_bytes) + " tables, " + bytes(r.workspace_bytes) + " workspace"});
   table.add({"objective", significant(median(figures(r, objective_of)), 6) + (r.frames > 1 ? " (median)" : "")});
+  table.add({"duality gap", gap_text(r)});
   table.add({"residual", significant(median(figures(r, residual_of)), 4) + (r.frames > 1 ? " (median)" : "")});
   table.add({"health", health_text(r)});
   if (rated(r)) {
@@ -171,7 +196,8 @@ Json report_json(const ReconstructReport& r) {
             {"weights", r.options.weights.empty() ? Json() : Json(r.options.weights)},
             {"operating_point", point_json(r.point)},
             {"objective", objective_json(r)},
-            {"rho", r.plan.rho},
+            {"rho", recon::uses_factor(r.point.solver) ? Json(r.plan.rho) : Json()},
+            {"rank", r.point.solver == recon::SolverKind::tsvd ? Json(r.plan.rank) : Json()},
             {"relaxation", r.plan.relaxation},
             {"max_reweighted", r.plan.max_reweighted},
             {"rows", r.size.rows},
@@ -184,6 +210,7 @@ Json report_json(const ReconstructReport& r) {
             {"table_bytes", r.table_bytes},
             {"workspace_bytes", r.workspace_bytes},
             {"median_objective", median(figures(r, objective_of))},
+            {"median_duality_gap", has_gap(r) ? Json(median(figures(r, gap_of))) : Json()},
             {"median_residual", median(figures(r, residual_of))},
             {"health",
              {{"converged", count(r, recon::Health::converged)},

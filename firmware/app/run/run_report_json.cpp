@@ -34,7 +34,7 @@ Json eye_json(const EyeFigures& eye) {
 Json operating_point(const EyeFigures& eye) {
   return {{"solver", name(eye.point.solver)},
           {"basis", name(eye.point.basis)},
-          {"operator", eye.point.op == recon::OperatorKind::dense ? "dense" : "csr"},
+          {"operator", name(eye.point.op)},
           {"precision", eye.point.precision == recon::Precision::f32 ? "f32" : "f64"},
           {"iterations", eye.point.iterations},
           {"lambda", eye.lambda.value},

@@ -85,7 +85,8 @@ hal::Result<DeadlineChoice> fit_deadline(double deadline_ms, double period_ms, c
   if (!time) return tl::unexpected(time.error());
   const DeadlineChoice choice = choose_iterations(deadline_ms, period_ms, *time, most);
   // A direct solver has nothing to leave out: its one step is what it is.
-  if (eye.reconstructor().plan().solver == recon::SolverKind::tikhonov) return choice;
+  const recon::SolverKind kind = eye.reconstructor().plan().solver;
+  if (kind == recon::SolverKind::tikhonov || kind == recon::SolverKind::tsvd) return choice;
   return eye.set_iterations(choice.iterations).map([&] { return choice; });
 }
 

@@ -55,7 +55,9 @@ TEST_CASE("reconstructing twice gives identical bytes") {
   const TemporaryFolder folder;
   put_frames(folder, 2);
   for (const char* how :
-       {"--basis identity --box 0,1", "--basis dct --nonnegative", "--precision f64", "--solver tikhonov"}) {
+       {"--basis identity --box 0,1", "--basis dct --nonnegative", "--precision f64", "--solver tikhonov",
+        "--solver adm --basis haar", "--solver adm --as-published --nonnegative", "--solver cp --basis tv --box 0,1",
+        "--solver fista", "--solver omp --basis dct", "--solver tsvd"}) {
     CAPTURE(how);
     const std::string command = std::string(small_eye) + "--sigma 0.002 " + how;
     CHECK(run_compueye(command + " --out first.npy --png first.png", folder.path()).exit_code == 0);
@@ -90,6 +92,45 @@ TEST_CASE("frames with weights of their own equal single runs with these weights
           doctest::Approx(all["per_frame"][f]["objective"].get<double>()).epsilon(1e-3));
     CHECK(relative_distance(std::span(together).subspan(256 * f, 256), pictures_in(folder / "one.npy")) < 1e-3);
   }
+}
+
+TEST_CASE("adm keeps the bound it is given, and as published it does not") {
+  const TemporaryFolder folder;
+  put_frames(folder, 2);
+  const auto right = json_from(
+      std::string(small_eye) + "--solver adm --nonnegative --epsilon 0.5 --iterations 2000 --json", folder.path());
+  CHECK(right["objective"]["epsilon"] == 0.5);
+  CHECK(right["health"]["converged"] == 2);
+  for (const auto& frame : right["per_frame"]) {
+    CHECK(frame["residual"].get<double>() == doctest::Approx(0.5).epsilon(1e-3));
+    CHECK(frame["duality_gap"].get<double>() < 0.01 * frame["objective"].get<double>());
+  }
+  const auto published = json_from(std::string(small_eye) +
+                                       "--solver adm --as-published --nonnegative --epsilon 0.5 "
+                                       "--iterations 2000 --json",
+                                   folder.path());
+  CHECK(published["operating_point"]["solver"] == "adm as published");
+  for (const auto& frame : published["per_frame"]) CHECK(std::abs(frame["residual"].get<double>() - 0.5) > 0.1);
+}
+
+TEST_CASE("solvers that end by themselves say where: omp by its elements, tsvd by its rank") {
+  const TemporaryFolder folder;
+  put_frames(folder, 1);
+  const auto omp = json_from(std::string(small_eye) + "--solver omp --epsilon 0.01 --json", folder.path());
+  CHECK(omp["per_frame"][0]["residual"].get<double>() <= 0.01);
+  CHECK(omp["per_frame"][0]["iterations"].get<int>() <= 64);
+  CHECK(omp["per_frame"][0]["iterations"].get<int>() >= 10);
+  CHECK(omp["per_frame"][0]["duality_gap"].is_null());
+  CHECK(omp["rho"].is_null());
+  const auto few = json_from(std::string(small_eye) + "--solver tsvd --rank 20 --json", folder.path());
+  const auto many = json_from(std::string(small_eye) + "--solver tsvd --rank 60 --json", folder.path());
+  const auto by_noise = json_from(std::string(small_eye) + "--solver tsvd --sigma 1 --json", folder.path());
+  CHECK(few["rank"] == 20);
+  CHECK(many["median_residual"].get<double>() < 0.5 * few["median_residual"].get<double>());
+  CHECK(by_noise["rank"].get<int>() > 10);
+  CHECK(by_noise["rank"].get<int>() < 64);
+  check_failed(run_compueye(std::string(small_eye) + "--solver tsvd --rank 65", folder.path()), 1,
+               {"--rank", "65", "1 to 64"});
 }
 
 TEST_CASE("the report has every figure") {
@@ -186,8 +227,11 @@ TEST_CASE("reconstruct --help states what goes with what and an example") {
   const Outcome help = run_compueye("reconstruct --help", folder.path());
   CHECK(help.exit_code == 0);
   CHECK(help.err.empty());
-  for (const char* part : {"admm, cp   every basis", "fista      identity", "tikhonov   identity", "numbered",
-                           "compueye reconstruct --response"}) {
+  for (const char* part :
+       {"  admm      identity, dct, haar, db4, dft, tv   none, nonnegative, box\n",
+        "  adm       identity                            none, nonnegative, box\n",
+        "  adm       dct, haar, db4, dft                 none\n",
+        "  tsvd      identity                            none\n", "numbered", "compueye reconstruct --response"}) {
     CAPTURE(part);
     CHECK(help.out.find(part) != std::string::npos);
   }

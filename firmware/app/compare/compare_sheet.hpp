@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+
+#include "firmware/app/compare/comparison.hpp"
+
+namespace compueye::firmware {
+
+/// Scene, conventional eye and every contender's picture with its figures, in rows of panels.
+[[nodiscard]] hal::Result<void> write_compare_sheet(const std::filesystem::path& path, const Comparison& comparison);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/app/board/board.hpp"
+#include "firmware/app/compare/compare_samples.hpp"
+#include "firmware/app/eye/picture_quality.hpp"
+#include "hal/clock.hpp"
+
+namespace compueye::firmware {
+
+/// What one contender made of the samples.
+struct ComparedRow {
+  Contender contender;
+  double lambda = 0.0;
+  int rank = 0;  ///< tsvd
+  recon::FrameInfo info;
+  double solve_ms = 0.0;  ///< median
+  double setup_s = 0.0;
+  std::uint64_t workspace_bytes = 0;
+  std::uint64_t table_bytes = 0;
+  PictureQuality quality;
+  hal::Image picture;
+  /// Objective over the least one of the same problem (basis, constraint, lambda), less 1; none for solvers whose
+  /// objective is another.
+  std::optional<double> excess;
+};
+
+struct Comparison {
+  std::string board;
+  std::string scene;
+  bool exact = false;
+  double sigma = 0.0;
+  int channels = 0;
+  int seeing = 0;
+  hal::Image truth;
+  std::optional<hal::Image> conventional;
+  std::optional<PictureQuality> conventional_quality;
+  std::vector<ComparedRow> rows;
+  std::size_t planned = 0;         ///< rows that there would be without a stop
+  std::vector<std::string> notes;  ///< sentences for the user
+};
+
+/// Solves the frame in every way. A stop (`progress` returning false) keeps the rows that are done.
+/// Errors: those of lambda_by_rule(), Reconstructor::create() and the metrics; out_of_range for a frame that leaves the
+/// range of float32.
+[[nodiscard]] hal::Result<Comparison> compare_all(const Board& board, const CompareOptions& options,
+                                                  const std::vector<Contender>& contenders, CompareSamples samples,
+                                                  const hal::Clock& clock, const recon::Progress& progress);
+
+}  // namespace compueye::firmware

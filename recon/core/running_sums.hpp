@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace compueye::recon::core {
+
+/// A = D S for receptive fields that are one run of coverages on every pixel row. S are running sums along each half
+/// pixel row, outward from the picture's centre line; D holds the differences of consecutive coverages, which vanish
+/// but near the ends of a run: about an eighth of A's entries. (Summation by parts; the same idea as the integral image
+/// of Crow 1984, in one dimension.)
+///
+/// The picture's four quadrants lie in the four lanes of a vector, folded on the centre lines: element (r, c) of lane l
+/// is r rows below the centre line (l & 2) or above it, c columns right of it (l & 1) or left. Where A is mirror
+/// symmetric on both axes a row and its images share one table and are computed at once, flips being permutations of
+/// lanes; else every row has a table of its own.
+template <class T>
+struct RunningSums {
+  bool symmetric = false;      ///< four rows a table
+  std::size_t image_rows = 0;  ///< both even where symmetric
+  std::size_t image_cols = 0;
+  std::size_t tables = 0;                ///< rows of A, or orbits of four of them
+  const std::uint32_t* first = nullptr;  ///< 4 tables + 1: taps of table t in lane q are first[4t+q] .. first[4t+q+1]-1
+  const std::uint16_t* element = nullptr;  ///< r * half_cols + c of each tap
+  const T* difference = nullptr;           ///< coverage at that element less coverage one further out
+  const std::int32_t* row = nullptr;       ///< symmetric: 4 tables, the row of A in each lane, -1 for one already there
+
+  [[nodiscard]] std::size_t half_rows() const noexcept { return (image_rows + 1) / 2; }
+  [[nodiscard]] std::size_t half_cols() const noexcept { return (image_cols + 1) / 2; }
+  /// Elements of T that forward() and adjoint() want as scratch.
+  [[nodiscard]] std::size_t scratch_size() const noexcept { return 4 * half_rows() * half_cols(); }
+};
+
+/// y = A x
+void forward(const RunningSums<float>& a, const float* x, float* y, float* scratch) noexcept;
+void forward(const RunningSums<double>& a, const double* x, double* y, double* scratch) noexcept;
+
+/// x += A' y
+void adjoint_accumulate(const RunningSums<float>& a, const float* y, float* x, float* scratch) noexcept;
+void adjoint_accumulate(const RunningSums<double>& a, const double* y, double* x, double* scratch) noexcept;
+
+}  // namespace compueye::recon::core

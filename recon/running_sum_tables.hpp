@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "recon/core/running_sums.hpp"
+#include "recon/mirror_symmetry.hpp"
+#include "recon/response.hpp"
+
+namespace compueye::recon {
+
+/// The tables that core::RunningSums looks at.
+template <class T>
+struct RunningSumTables {
+  std::vector<std::uint32_t> first;
+  std::vector<std::uint16_t> element;
+  std::vector<T> difference;
+  std::vector<std::int32_t> row;
+  core::RunningSums<T> view;
+
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return first.size() * sizeof(std::uint32_t) + element.size() * sizeof(std::uint16_t) +
+           difference.size() * sizeof(T) + row.size() * sizeof(std::int32_t);
+  }
+};
+
+/// A response as running sums: four rows a table where `symmetry` has all four images and the picture's sides are even,
+/// else a table a row. Differences below the rounding of T, relative to the largest entry, are left out. Nothing when a
+/// quadrant has more than 65,536 pixels, which 16 bits cannot number.
+template <class T>
+[[nodiscard]] std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, int image_rows,
+                                                                    int image_cols, const MirrorSymmetry& symmetry);
+
+/// How many differences of `seeing` are not negligible: what one of its rows after the other would take as running
+/// sums, to be compared with its entries.
+[[nodiscard]] std::int64_t running_sum_taps(const Response& seeing, int image_rows, int image_cols);
+
+}  // namespace compueye::recon

@@ -1,0 +1,169 @@
+#include "recon/core/running_sums.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "calib/nominal.hpp"
+#include "calib/plausible_response.hpp"
+#include "recon/problem_tables.hpp"
+#include "recon/running_sum_tables.hpp"
+#include "tests/recon/random_problem.hpp"
+#include "tests/recon/solve_frame.hpp"
+
+using namespace compueye;
+using namespace compueye::tests;
+using recon::Response;
+
+namespace {
+
+struct Eye {
+  std::string name;
+  Response a;  // seeing rows
+  int rows, cols;
+};
+
+hal::EyeGeometry geometry(int side, double interommatidial_deg, double acceptance_deg) {
+  constexpr double deg = std::numbers::pi / 180.0;
+  hal::EyeGeometry eye;
+  eye.rows = eye.columns = side;
+  eye.interommatidial_rad = interommatidial_deg * deg;
+  eye.acceptance_rad = acceptance_deg * deg;
+  return eye;
+}
+
+Response seeing(const Response& a) {
+  return a.select_rows(a.seeing_rows());
+}
+
+/// A run of ones with fractions at its ends on every pixel row, anywhere in the picture.
+Response random_runs(Random& random, int count, int rows, int cols) {
+  std::vector<double> values;
+  for (int m = 0; m < count; ++m) {
+    for (int r = 0; r < rows; ++r) {
+      const double begin = random.uniform(-1.0, cols), end = begin + random.uniform(0.0, cols);
+      for (int c = 0; c < cols; ++c) values.push_back(std::clamp(std::min(end - c, c + 1.0 - begin), 0.0, 1.0));
+    }
+  }
+  return seeing(Response::from_dense(count, rows * cols, values).value());
+}
+
+std::vector<Eye> eyes() {
+  Random random(61);
+  std::vector<Eye> all;
+  const auto nominal = [&](int side, double dphi, double acceptance, const hal::ObjectPlane& plane) {
+    all.push_back({"nominal " + std::to_string(side),
+                   seeing(calib::nominal_response(geometry(side, dphi, acceptance), plane).value()), plane.rows,
+                   plane.cols});
+  };
+  nominal(8, 1.5, 8.0, {16, 16, 8, 8, 30});
+  nominal(7, 1.5, 8.0, {16, 16, 8, 8, 30});  // rows that are their own mirror images
+  nominal(8, 1.5, 8.0, {15, 16, 8, 8, 30});  // a centre row of pixels
+  nominal(16, 9.0, 60.0, {32, 48, 60, 60, 10});
+  const hal::ObjectPlane plane{32, 32, 60, 60, 10};
+  all.push_back(
+      {"measured", seeing(calib::plausible_response(geometry(12, 10.0, 60.0), plane, {}, 3).value()), 32, 32});
+  for (const auto& [rows, cols] : {std::pair{1, 1}, {1, 9}, {9, 1}, {6, 7}, {7, 6}, {5, 5}}) {
+    all.push_back(
+        {"runs " + std::to_string(rows) + "x" + std::to_string(cols), random_runs(random, 11, rows, cols), rows, cols});
+  }
+  return all;
+}
+
+template <class T>
+std::vector<T> cast(const std::vector<double>& v) {
+  std::vector<T> out;
+  for (const double each : v) out.push_back(static_cast<T>(each));
+  return out;
+}
+
+/// Every rounding of a tap moves a running sum of at most cols / 2 pixels of magnitude one by half a unit, as does
+/// every addition within that sum, and the sum over all taps once more.
+template <class T>
+double bound(const Eye& eye, int m) {
+  double differences = 0.0, entries = 0.0, before = 0.0;
+  std::int32_t last = -2;
+  int taps = 0;
+  eye.a.for_each_in_row(m, [&](std::int32_t n, double v) {
+    const double step = n == last + 1 ? std::abs(v - before) : std::abs(v) + std::abs(before);
+    differences += step;
+    taps += step > 0.0 ? 1 : 0;
+    entries += std::abs(v);
+    before = v;
+    last = n;
+  });
+  differences += std::abs(before);
+  const double unit = 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon());
+  const double longest_sum = 0.5 * eye.cols + 1.0;
+  return unit * (differences * longest_sum * (longest_sum + 0.25 * taps + 8.0) + 2.0 * entries);
+}
+
+template <class T>
+void check_against_double(const Eye& eye, const recon::MirrorSymmetry& symmetry, bool symmetric) {
+  Random random(62);
+  const auto tables = recon::running_sum_tables<T>(eye.a, eye.rows, eye.cols, symmetry);
+  REQUIRE(tables.has_value());
+  CHECK(tables->view.symmetric == symmetric);
+  const AlignedBytes memory(tables->view.scratch_size() * sizeof(T));
+  auto* scratch = reinterpret_cast<T*>(memory.span().data());
+  const auto x = random_vector(random, eye.rows * eye.cols), u = random_vector(random, eye.a.rows());
+  const auto xt = cast<T>(x), ut = cast<T>(u);
+  std::vector<T> y(u.size()), back(x.size(), T(1));
+  recon::core::forward(tables->view, xt.data(), y.data(), scratch);
+  recon::core::adjoint_accumulate(tables->view, ut.data(), back.data(), scratch);
+  const std::vector<double> xd(xt.begin(), xt.end()), ud(ut.begin(), ut.end());
+  std::vector<double> exact(u.size()), exact_back(x.size());
+  eye.a.forward(xd, exact);
+  eye.a.adjoint(ud, exact_back);
+  double worst_bound = 0.0;
+  for (int m = 0; m < eye.a.rows(); ++m) {
+    const double allowed = bound<T>(eye, m);
+    CHECK(std::abs(static_cast<double>(y[static_cast<std::size_t>(m)]) - exact[static_cast<std::size_t>(m)]) <=
+          allowed);
+    worst_bound += allowed;
+  }
+  for (std::size_t n = 0; n < x.size(); ++n)
+    CHECK(std::abs(static_cast<double>(back[n]) - 1.0 - exact_back[n]) <= worst_bound);
+  double forward_dot = 0.0, adjoint_dot = 0.0;
+  for (std::size_t m = 0; m < u.size(); ++m) forward_dot += static_cast<double>(y[m]) * ud[m];
+  for (std::size_t n = 0; n < x.size(); ++n) adjoint_dot += (static_cast<double>(back[n]) - 1.0) * xd[n];
+  CHECK(std::abs(forward_dot - adjoint_dot) <= worst_bound * std::sqrt(static_cast<double>(x.size())));
+}
+
+}  // namespace
+
+TEST_CASE("running sums are A and A' within the bound of their sums, with symmetry and without") {
+  int symmetric = 0;
+  for (const Eye& eye : eyes()) {
+    CAPTURE(eye.name);
+    const auto found = recon::find_mirror_symmetry(eye.a, eye.rows, eye.cols);
+    const recon::MirrorSymmetry none{{found.permutations.front()}, {{1}}};
+    const bool four = found.order() == 4 && eye.rows % 2 == 0 && eye.cols % 2 == 0;
+    symmetric += four ? 1 : 0;
+    check_against_double<float>(eye, found, four);
+    check_against_double<double>(eye, found, four);
+    check_against_double<float>(eye, none, false);
+    check_against_double<double>(eye, none, false);
+  }
+  CHECK(symmetric >= 3);
+}
+
+TEST_CASE("an eye's operator is running sums, a matrix without runs is not") {
+  const auto kind_of = [](const Response& a, int rows, int cols) {
+    recon::OwnedTables<float> tables;
+    REQUIRE(recon::fill_operator(a, rows, cols, tables).has_value());
+    return tables.problem.a.kind;
+  };
+  Random random(63);
+  for (const Eye& eye : eyes()) {
+    if (eye.name == "nominal 8" && eye.rows == 16) {
+      CHECK(kind_of(eye.a, eye.rows, eye.cols) == recon::OperatorKind::running_sums_symmetric);
+    }
+  }
+  CHECK(kind_of(random_response(random, 20, 256, 1.0), 16, 16) == recon::OperatorKind::dense);
+  CHECK(kind_of(random_response(random, 20, 256, 0.05), 16, 16) == recon::OperatorKind::csr);
+  CHECK(kind_of(random_runs(random, 300, 20, 60), 20, 60) == recon::OperatorKind::running_sums);
+}
