@@ -124,7 +124,8 @@ hal::Result<std::vector<Figures>> measure_all() {
   recon::Objective objective;
   objective.basis = recon::BasisKind::dct;
   objective.constraint = recon::ConstraintKind::box;
-  const auto lambda = recon::lambda_by_rule(*response, recon::SolverKind::admm, objective.basis, bench::read_noise);
+  const auto lambda =
+      recon::lambda_by_rule(*response, side, side, recon::SolverKind::admm, objective.basis, bench::read_noise);
   if (!lambda) return tl::unexpected(lambda.error());
   objective.lambda = *lambda;
   recon::Plan plan;

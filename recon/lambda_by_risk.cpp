@@ -16,7 +16,7 @@ using hal::fail;
 using hal::Result;
 
 /// Upwards more than down: the rule errs on the small side, for the sake of pictures that are not sparse.
-constexpr std::array factors{1.0, 0.25, 4.0, 16.0, 64.0};
+constexpr std::array factors{1.0, 0.25, 4.0, 16.0, 64.0, 256.0};
 /// Of sigma: large enough for float32 to see, small enough for the picture to follow in proportion.
 constexpr double probe_size = 0.3;
 constexpr double standard_errors = 2.0;
@@ -63,7 +63,7 @@ class RiskSearch {
   }
 
   Result<LambdaByRisk> run(Objective objective) {
-    LambdaByRisk found{objective.lambda, {}};
+    LambdaByRisk found{objective.lambda, {}, std::nullopt};
     for (const double factor : factors) {
       objective.lambda = found.lambda * factor;
       if (auto tried = try_at(objective, found); !tried) return tl::unexpected(std::move(tried.error()));
@@ -72,6 +72,7 @@ class RiskSearch {
                                                [](const auto& a, const auto& b) { return a.risk < b.risk; });
     const double noise = sigma_ * sigma_ * std::sqrt(static_cast<double>(seeing_.size()));
     if (found.trials.front().risk - best.risk > standard_errors * noise) found.lambda = best.lambda;
+    found.factor = std::move(factor_);
     return found;
   }
 
@@ -143,7 +144,7 @@ Result<LambdaByRisk> lambda_by_risk(const Response& response, int image_rows, in
     return fail(ErrorCode::mismatch, "samples",
                 "are " + std::to_string(y.size()) + ", the response has " + std::to_string(response.rows()) + " rows");
   }
-  if (sigma == 0.0) return LambdaByRisk{objective.lambda, {}};
+  if (sigma == 0.0) return LambdaByRisk{objective.lambda, {}, std::move(factor)};
   return RiskSearch(response, image_rows, image_cols, plan, y, sigma, std::move(factor), progress).run(objective);
 }
 

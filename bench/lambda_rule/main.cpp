@@ -69,6 +69,7 @@ int main(int argc, char** argv) {
       bench::print_tuning(c, sweeps);
     } else {
       bench::print_evaluation(c, sweeps, options.each);
+      bench::print_second_passes(c, sweeps);
     }
     static_cast<void>(std::fflush(stdout));
   }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <new>
 
+#include "bench/lambda_rule/second_pass.hpp"
 #include "calib/nominal.hpp"
 #include "calib/plausible_response.hpp"
 #include "recon/lambda_by_risk.hpp"
@@ -24,6 +24,12 @@ recon::Response response_of(const Case& c) {
                     : calib::nominal_response(c.eye, c.object).value();
 }
 
+double nmse_of(const std::vector<float>& x, const hal::Image& truth) {
+  hal::Image picture(truth.rows, truth.cols);
+  picture.pixels = x;
+  return recon::nmse(truth, picture).value();
+}
+
 }  // namespace
 
 double Sweep::best() const {
@@ -39,8 +45,10 @@ SweptEye::SweptEye(const Case& c) : case_(c), response_(response_of(c)) {}
 Sweep SweptEye::sweep(const std::string& scene, std::uint64_t seed, double sigma, bool with_risk) {
   const hal::Image truth = sim::render_built_in(scene, case_.object.rows, case_.object.cols, seed).value();
   const std::vector<float> y = samples(scene, truth, seed, sigma);
-  const double rule = recon::lambda_by_rule(response_, recon::SolverKind::admm, case_.basis, sigma).value();
-  Sweep result{scene, seed, sigma, {}, {}, 0.0, 0.0, 1.0};
+  const double rule = recon::lambda_by_rule(response_, case_.object.rows, case_.object.cols, recon::SolverKind::admm,
+                                            case_.basis, sigma)
+                          .value();
+  Sweep result{scene, seed, sigma, {}, {}, 0.0, 0.0, 1.0, 0.0, 0.0};
   for (int k = -case_.grid_below; k <= case_.grid_above; ++k) {
     result.multiples.push_back(std::pow(case_.grid_step, k));
     result.nmse.push_back(nmse_at(rule * result.multiples.back(), y, truth));
@@ -48,6 +56,11 @@ Sweep SweptEye::sweep(const std::string& scene, std::uint64_t seed, double sigma
   result.at_rule = result.nmse[static_cast<std::size_t>(case_.grid_below)];
   result.by_risk = result.at_rule;
   if (!with_risk) return result;
+  if (case_.basis == recon::BasisKind::identity) {
+    const std::vector<float> first = solved(case_, response_, objective(rule), y, factor_);
+    result.debiased = nmse_of(debiased(case_, response_, y, first), truth);
+    result.reweighted = nmse_of(reweighted(case_, response_, y, first, 2.0 * rule), truth);
+  }
   const auto found = recon::lambda_by_risk(response_, case_.object.rows, case_.object.cols, objective(rule), plan(), y,
                                            sigma, factor_);
   result.risk_multiple = found.value().lambda / rule;
@@ -88,16 +101,7 @@ recon::Plan SweptEye::plan() const {
 }
 
 double SweptEye::nmse_at(double lambda, const std::vector<float>& y, const hal::Image& truth) {
-  const auto solver =
-      recon::Reconstructor::create(response_, case_.object.rows, case_.object.cols, objective(lambda), plan(), factor_)
-          .value();
-  if (!factor_) factor_ = solver.factor();
-  const std::size_t bytes = solver.required_bytes();
-  auto* memory = static_cast<std::byte*>(::operator new (bytes, std::align_val_t{64}));
-  hal::Image picture(truth.rows, truth.cols);
-  static_cast<void>(solver.solve(y, {}, {memory, bytes}, picture.pixels));
-  ::operator delete (memory, std::align_val_t{64});
-  return recon::nmse(truth, picture).value();
+  return nmse_of(solved(case_, response_, objective(lambda), y, factor_), truth);
 }
 
 }  // namespace compueye::bench

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 
 namespace compueye::bench {
 namespace {
@@ -56,6 +57,22 @@ void print_evaluation_head() {
       "NMSE / best NMSE: median / worst (scenes); 'seen' where the best NMSE is at most {}\n{:32} {:>18} {:>18} {:>18} "
       "{:>18} {:>9}\n",
       unseen_above, "case", "rule, seen", "by risk, seen", "rule, unseen", "by risk, unseen", "best NMSE");
+}
+
+void print_second_passes(const Case& c, const std::vector<Sweep>& sweeps) {
+  if (c.basis != recon::BasisKind::identity) return;
+  for (const double sigma : c.evaluation_sigmas) {
+    std::vector<Sweep> here;
+    std::copy_if(sweeps.begin(), sweeps.end(), std::back_inserter(here),
+                 [sigma](const Sweep& s) { return s.sigma == sigma; });
+    const auto over_best = [&here](double Sweep::*nmse) {
+      std::vector<double> ratios;
+      for (const Sweep& s : here) ratios.push_back(ratio(s.*nmse, s.best()));
+      return summary(ratios);
+    };
+    fmt::print("  sigma {:5}, NMSE / best NMSE of one pass: rule {}  debiased {}  reweighted {}\n", sigma,
+               over_best(&Sweep::at_rule), over_best(&Sweep::debiased), over_best(&Sweep::reweighted));
+  }
 }
 
 void print_evaluation(const Case& c, const std::vector<Sweep>& sweeps, bool each) {

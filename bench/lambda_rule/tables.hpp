@@ -12,6 +12,9 @@ void print_tuning(const Case& c, const std::vector<Sweep>& sweeps);
 /// How far the rule, and lambda by risk, land from the best lambda: a line a scene when asked, a line a case.
 void print_evaluation(const Case& c, const std::vector<Sweep>& sweeps, bool each);
 
+/// For pixels: what a second pass makes of the rule's picture, per noise level.
+void print_second_passes(const Case& c, const std::vector<Sweep>& sweeps);
+
 /// What the columns of the lines a case mean.
 void print_evaluation_head();
 

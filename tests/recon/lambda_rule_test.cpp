@@ -29,7 +29,7 @@ Response scaled(const Response& a, double factor) {
 }
 
 double rule(const Response& a, BasisKind basis, double sigma, SolverKind solver = SolverKind::admm) {
-  return lambda_by_rule(a, solver, basis, sigma).value();
+  return lambda_by_rule(a, 1, a.cols(), solver, basis, sigma).value();
 }
 
 /// Samples of one bright block on black, which is sparse in differences.
@@ -74,6 +74,9 @@ TEST_CASE("the rule's scales are a median column norm and a mean column sum") {
   CHECK(rule(a, BasisKind::identity, 0.5) == doctest::Approx(1.1 * 0.5 * 2.0));
   CHECK(rule(a, BasisKind::dct, 0.5) == doctest::Approx(0.002 * 0.5 * 10.0 / 3.0));
   CHECK(rule(a, BasisKind::identity, 0.7, SolverKind::tikhonov) == doctest::Approx(4.0));
+  CHECK(rule(a, BasisKind::identity, 0.7, SolverKind::tsvd) == doctest::Approx(4.0));
+  CHECK(rule(a, BasisKind::identity, 0.5, SolverKind::omp) == rule(a, BasisKind::identity, 0.5));
+  CHECK(rule(a, BasisKind::dct, 0.5, SolverKind::omp) > 10.0 * rule(a, BasisKind::dct, 0.5));
 }
 
 TEST_CASE("lambda follows the unit of the samples as the objective does") {
@@ -92,7 +95,7 @@ TEST_CASE("the rule refuses a sigma that is none, and survives an eye that sees 
   const auto blind = Response::from_csr(2, 3, {0, 0, 0}, {}, {}).value();
   CHECK(rule(blind, BasisKind::dct, 0.1) > 0.0);
   for (const double sigma : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
-    const auto lambda = lambda_by_rule(blind, SolverKind::admm, BasisKind::dct, sigma);
+    const auto lambda = lambda_by_rule(blind, 1, 3, SolverKind::admm, BasisKind::dct, sigma);
     REQUIRE_FALSE(lambda.has_value());
     CHECK(lambda.error().code == hal::ErrorCode::out_of_range);
   }
@@ -111,7 +114,7 @@ TEST_CASE("lambda by risk finds a better lambda than a start that is too small, 
     const Scene scene = noisy_block(a, 1.0, seed);
     const auto found = lambda_by_risk(a, side, side, objective, plan, scene.y, 1.0);
     REQUIRE(found.has_value());
-    CHECK(found->trials.size() == 5);
+    CHECK(found->trials.size() == 6);
     CHECK(found->trials.front().lambda == 0.1);
     CHECK(found->lambda > 0.5);
     const double start = error_at(a, scene, objective, plan, 0.1);
@@ -156,7 +159,7 @@ TEST_CASE("lambda by risk keeps the start where the samples cannot tell") {
   const auto found = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.5);
   REQUIRE(found.has_value());
   CHECK(found->lambda == 0.05);
-  CHECK(found->trials.size() == 5);
+  CHECK(found->trials.size() == 6);
   const auto noise_free = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.0);
   REQUIRE(noise_free.has_value());
   CHECK(noise_free->lambda == 0.05);

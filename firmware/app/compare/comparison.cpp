@@ -77,7 +77,8 @@ class Runner {
     recon::Objective objective{contender.basis, contender.constraint, board_.reconstruction.box_lo,
                                board_.reconstruction.box_hi, options_.lambda.value_or(0.0)};
     if (!options_.lambda) {
-      const auto lambda = recon::lambda_by_rule(samples_.response, contender.solver, contender.basis, samples_.sigma);
+      const auto lambda = recon::lambda_by_rule(samples_.response, board_.object.rows, board_.object.cols,
+                                                contender.solver, contender.basis, samples_.sigma);
       if (!lambda) return tl::unexpected(lambda.error());
       objective.lambda = *lambda;
     }

@@ -24,9 +24,10 @@ hal::Result<LambdaChoice> choose_lambda(const Board& board, const EyeRequest& re
   if (request.lambda) return LambdaChoice{*request.lambda, false, 0.0};
   if (settings.lambda && !request.sigma) return LambdaChoice{*settings.lambda, false, 0.0};
   const double sigma = request.sigma.value_or(board.noise_sigma());
-  return recon::lambda_by_rule(response, settings.solver, settings.basis, sigma).map([&](double lambda) {
-    return LambdaChoice{lambda, true, sigma};
-  });
+  return recon::lambda_by_rule(response, board.object.rows, board.object.cols, settings.solver, settings.basis, sigma)
+      .map([&](double lambda) {
+        return LambdaChoice{lambda, true, sigma};
+      });
 }
 
 recon::Plan plan_of(const Board& board, const EyeRequest& request, std::int64_t seeing) {

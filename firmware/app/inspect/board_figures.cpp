@@ -95,7 +95,8 @@ void add_solver(const Board& board, FigureList& figures) {
 
 Result<double> add_rules(const Board& board, const recon::Response& a, FigureList& figures) {
   const ReconstructionSettings& r = board.reconstruction;
-  const auto by_rule = recon::lambda_by_rule(a, r.solver, r.basis, board.noise_sigma());
+  const auto by_rule =
+      recon::lambda_by_rule(a, board.object.rows, board.object.cols, r.solver, r.basis, board.noise_sigma());
   if (!by_rule) return by_rule;
   const double lambda = r.lambda.value_or(*by_rule);
   recon::Plan plan;

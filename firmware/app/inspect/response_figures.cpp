@@ -13,6 +13,7 @@
 #include "firmware/app/report/number_text.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/mirror_symmetry.hpp"
+#include "recon/option_names.hpp"
 #include "recon/penalty_rule.hpp"
 #include "recon/reconstructor.hpp"
 
@@ -85,6 +86,8 @@ Result<void> add_memory(const Response& a, PictureSize size, FigureList& figures
                        std::vector<float>(packed)};
   const auto made = recon::Reconstructor::create(a, size.rows, size.cols, objective, plan, std::move(factor));
   if (!made) return tl::unexpected(made.error());
+  figures.add("operator", "operator (how A is applied)", std::string(recon::name(made->operating_point().op)),
+              recon::name(made->operating_point().op));
   figures.add("rho_by_rule", "rho by rule", significant(made->plan().rho, 4), made->plan().rho);
   figures.add(
       "admm_memory", "memory of admm (f32)",

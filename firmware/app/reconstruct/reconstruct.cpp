@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -17,6 +18,7 @@
 #include "firmware/app/report/progress_reporter.hpp"
 #include "firmware/files/response_file.hpp"
 #include "hal/clock.hpp"
+#include "recon/lambda_by_risk.hpp"
 #include "recon/lambda_rule.hpp"
 
 namespace compueye::firmware {
@@ -85,6 +87,21 @@ Result<Inputs> read_inputs(const ReconstructOptions& o, PictureSize size, const 
   return inputs;
 }
 
+/// The risk is known for samples that all carry the same noise.
+Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, const ProblemStatement& problem,
+                                                const Inputs& inputs, const recon::Progress& progress) {
+  const auto weights = inputs.frames.weights_of(0);
+  if (std::any_of(weights.begin(), weights.end(), [](float w) { return w != 1.0F; })) {
+    return fail(ErrorCode::unsupported, "--lambda-from-samples",
+                "needs a first frame whose weights are the largest of every channel, expected --weights of shape (M,) "
+                "or a complete first frame");
+  }
+  auto found = recon::lambda_by_risk(*inputs.response, problem.size.rows, problem.size.cols, problem.objective,
+                                     problem.plan, inputs.frames.samples_of(0), *o.sigma, std::nullopt, progress);
+  if (!found && found.error().code != ErrorCode::interrupted) found.error().place = o.samples;
+  return found;
+}
+
 /// The solver knows of lambda and response, people of the options and files behind them.
 std::string place_of(const ReconstructOptions& o, const std::string& place) {
   if (o.rank && place == "rank") return "--rank";
@@ -99,12 +116,20 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatemen
   problem.objective.lambda = o.lambda.value_or(0.0);
   problem.plan.max_reweighted = inputs.frames.max_reweighted;
   if (o.sigma) {
-    const auto lambda = recon::lambda_by_rule(a, problem.plan.solver, problem.objective.basis, *o.sigma);
+    const auto lambda = recon::lambda_by_rule(a, problem.size.rows, problem.size.cols, problem.plan.solver,
+                                              problem.objective.basis, *o.sigma);
     if (!lambda) return tl::unexpected(lambda.error());
     problem.objective.lambda = *lambda;
   }
+  std::optional<recon::Factor> factor;
+  if (o.lambda_from_samples) {
+    auto found = lambda_from_samples(o, problem, inputs, progress);
+    if (!found) return tl::unexpected(std::move(found.error()));
+    problem.objective.lambda = found->lambda;
+    factor = std::move(found->factor);
+  }
   auto made = recon::Reconstructor::create(a, problem.size.rows, problem.size.cols, problem.objective, problem.plan,
-                                           std::nullopt, progress);
+                                           std::move(factor), progress);
   if (!made && made.error().code != ErrorCode::interrupted) made.error().place = place_of(o, made.error().place);
   return made;
 }

@@ -74,10 +74,16 @@ void add_problem(CLI::App& command, ReconstructOptions& o) {
   auto* lambda = command.add_option("--lambda", o.lambda, "weight of the penalty, by hand")
                      ->type_name("V")
                      ->check(number_where(not_negative, "a finite number of 0 or more"));
-  command.add_option("--sigma", o.sigma, "noise of a sample (of weight 1) in white pixels: lambda by rule")
-      ->type_name("V")
-      ->excludes(lambda)
-      ->check(number_where(not_negative, "a finite number of 0 or more"));
+  auto* sigma =
+      command.add_option("--sigma", o.sigma, "noise of a sample (of weight 1) in white pixels: lambda by rule")
+          ->type_name("V")
+          ->excludes(lambda)
+          ->check(number_where(not_negative, "a finite number of 0 or more"));
+  command
+      .add_flag("--lambda-from-samples", o.lambda_from_samples,
+                "choose among six multiples of the rule's lambda by the risk that the first frame shows; costs twelve "
+                "frames")
+      ->needs(sigma);
   command
       .add_option("--epsilon", o.epsilon,
                   "adm: min ||Psi x||_1 subject to ||W^(1/2)(Ax-y)|| <= V; omp: stop there; in white pixels")

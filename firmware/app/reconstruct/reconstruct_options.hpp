@@ -26,7 +26,8 @@ struct ReconstructOptions {
   bool nonnegative = false;
   std::optional<int> iterations;
   std::optional<double> lambda;
-  std::optional<double> sigma;    ///< of a sample of weight one
+  std::optional<double> sigma;  ///< of a sample of weight one
+  bool lambda_from_samples = false;
   std::optional<double> epsilon;  ///< bound of ||W^(1/2)(Ax-y)||: adm and omp
   std::optional<int> rank;        ///< tsvd
   bool as_published = false;      ///< adm

@@ -69,7 +69,13 @@ std::string constraint_text(const recon::Objective& objective) {
 std::string lambda_text(const ReconstructReport& r) {
   const std::string value = significant(r.objective.lambda, 4);
   if (!r.options.sigma) return value + " by hand";
-  return value + " by rule from sigma " + significant(*r.options.sigma, 4);
+  return value + (r.options.lambda_from_samples ? " by risk of the first frame, sigma " : " by rule from sigma ") +
+         significant(*r.options.sigma, 4);
+}
+
+std::string lambda_origin(const ReconstructReport& r) {
+  if (!r.options.sigma) return "hand";
+  return r.options.lambda_from_samples ? "risk" : "rule";
 }
 
 /// What says how far a solver may stay from y, and its value.
@@ -127,7 +133,7 @@ Json objective_json(const ReconstructReport& r) {
           {"hi", box ? Json(r.objective.hi) : Json()},
           {"lambda", r.objective.lambda},
           {"epsilon", r.options.epsilon ? Json(*r.options.epsilon) : Json()},
-          {"lambda_by", r.options.sigma ? "rule" : "hand"},
+          {"lambda_by", lambda_origin(r)},
           {"sigma", r.options.sigma ? Json(*r.options.sigma) : Json()}};
 }
 

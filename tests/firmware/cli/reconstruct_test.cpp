@@ -236,3 +236,36 @@ TEST_CASE("reconstruct --help states what goes with what and an example") {
     CHECK(help.out.find(part) != std::string::npos);
   }
 }
+
+TEST_CASE("lambda from the samples is one of the rule's multiples, and says so") {
+  const TemporaryFolder folder;
+  put_frames(folder, 2);
+  const std::string command = std::string(small_eye) + "--basis haar --box 0,1 --sigma 0.05 --truth truth.npy --json ";
+  const auto rule = json_from(command + "--out rule.npy", folder.path());
+  const auto risk = json_from(command + "--lambda-from-samples --out risk.npy", folder.path());
+  CHECK(rule["objective"]["lambda_by"] == "rule");
+  CHECK(risk["objective"]["lambda_by"] == "risk");
+  const double multiple = risk["objective"]["lambda"].get<double>() / rule["objective"]["lambda"].get<double>();
+  bool known = false;
+  for (const double each : {0.25, 1.0, 4.0, 16.0, 64.0, 256.0}) known = known || std::abs(multiple / each - 1.0) < 1e-6;
+  CHECK(known);
+  const Outcome text =
+      run_compueye(std::string(small_eye) + "--basis haar --box 0,1 --sigma 0.05 --lambda-from-samples --out again.npy",
+                   folder.path());
+  CHECK(text.out.find("by risk of the first frame") != std::string::npos);
+  CHECK(pictures_in(folder / "again.npy") == pictures_in(folder / "risk.npy"));
+}
+
+TEST_CASE("lambda from the samples needs their noise, and a first frame without missing channels") {
+  const TemporaryFolder folder;
+  put_frames(folder, 2);
+  check_failed(run_compueye(std::string(small_eye) + "--lambda 1 --lambda-from-samples --out x.npy", folder.path()), 2,
+               {"--lambda-from-samples", "--sigma"});
+  std::vector<double> weights(128, 1.0);
+  weights[5] = 0.0;
+  put_npy(folder, "w.npy", {2, 64}, weights);
+  check_failed(run_compueye(std::string(small_eye) + "--sigma 0.1 --lambda-from-samples --weights w.npy --out x.npy",
+                            folder.path()),
+               1, {"--lambda-from-samples", "first frame"});
+  CHECK_FALSE(std::filesystem::exists(folder / "x.npy"));
+}

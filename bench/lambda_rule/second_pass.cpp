@@ -1,0 +1,73 @@
+#include "bench/lambda_rule/second_pass.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+
+namespace compueye::bench {
+namespace {
+
+constexpr float lit_above = 0.1F;
+
+/// A diag(factors), entries that become zero left out.
+recon::Response scaled_columns(const recon::Response& response, const std::vector<float>& factors) {
+  std::vector<std::int64_t> start{0};
+  std::vector<std::int32_t> columns;
+  std::vector<double> values;
+  for (int m = 0; m < response.rows(); ++m) {
+    response.for_each_in_row(m, [&](std::int32_t n, double v) {
+      const double scaled = v * factors[static_cast<std::size_t>(n)];
+      if (scaled == 0.0) return;
+      columns.push_back(n);
+      values.push_back(scaled);
+    });
+    start.push_back(static_cast<std::int64_t>(values.size()));
+  }
+  return recon::Response::from_csr(response.rows(), response.cols(), start, columns, values).value();
+}
+
+}  // namespace
+
+std::vector<float> solved(const Case& c, const recon::Response& response, const recon::Objective& objective,
+                          const std::vector<float>& y, std::optional<recon::Factor>& factor) {
+  recon::Plan plan;
+  plan.iterations = c.iterations;
+  const auto solver =
+      recon::Reconstructor::create(response, c.object.rows, c.object.cols, objective, plan, factor).value();
+  if (!factor) factor = solver.factor();
+  const std::size_t bytes = solver.required_bytes();
+  auto* memory = static_cast<std::byte*>(::operator new (bytes, std::align_val_t{64}));
+  std::vector<float> x(static_cast<std::size_t>(response.cols()));
+  static_cast<void>(solver.solve(y, {}, {memory, bytes}, x));
+  ::operator delete (memory, std::align_val_t{64});
+  return x;
+}
+
+std::vector<float> debiased(const Case& c, const recon::Response& response, const std::vector<float>& y,
+                            const std::vector<float>& x) {
+  std::vector<float> support(x.size());
+  for (std::size_t n = 0; n < x.size(); ++n) support[n] = x[n] > lit_above ? 1.0F : 0.0F;
+  const recon::Response seen = scaled_columns(response, support);
+  if (seen.stored_entries() == 0) return x;
+  recon::Objective objective;
+  objective.constraint = c.constraint;
+  objective.lambda = 1e-6;
+  std::optional<recon::Factor> factor;
+  return solved(c, seen, objective, y, factor);
+}
+
+std::vector<float> reweighted(const Case& c, const recon::Response& response, const std::vector<float>& y,
+                              const std::vector<float>& x, double lambda) {
+  std::vector<float> factors(x.size());
+  for (std::size_t n = 0; n < x.size(); ++n) factors[n] = (x[n] + lit_above) / lit_above;
+  recon::Objective objective;
+  objective.constraint = recon::ConstraintKind::nonnegative;
+  objective.lambda = lambda;
+  std::optional<recon::Factor> factor;
+  std::vector<float> again = solved(c, scaled_columns(response, factors), objective, y, factor);
+  for (std::size_t n = 0; n < x.size(); ++n) again[n] = std::min(again[n] * factors[n], 1.0F);
+  return again;
+}
+
+}  // namespace compueye::bench
