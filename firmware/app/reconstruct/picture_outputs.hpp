@@ -29,6 +29,8 @@ class PictureOutputs {
   /// that could have been told at once. Errors: those of AtomicFile; out_of_range (a side too long for PNG).
   [[nodiscard]] static hal::Result<PictureOutputs> create(const OutputRequest& request, InterruptWatch& watch);
 
+  PictureOutputs(const PictureOutputs&) = delete;
+  PictureOutputs& operator=(const PictureOutputs&) = delete;
   PictureOutputs(PictureOutputs&&) = default;
   PictureOutputs& operator=(PictureOutputs&&) = delete;
   /// Without commit(), PNGs already written are removed.

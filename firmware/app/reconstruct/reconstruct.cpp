@@ -171,7 +171,7 @@ Result<void> reconstruct(const ReconstructOptions& o) {
   const std::int64_t began_ns = clock.now_ns();
   const auto reconstructor = set_up(o, *problem, *inputs, progress);
   reporter.finish();
-  if (const auto stopped = watch.check(); !stopped) return stopped;
+  if (auto stopped = watch.check(); !stopped) return stopped;
   if (!reconstructor) return tl::unexpected(reconstructor.error());
   ReconstructReport report = report_of(o, *reconstructor, inputs->frames);
   report.setup_s = static_cast<double>(clock.now_ns() - began_ns) * 1e-9;
