@@ -65,9 +65,15 @@ std::vector<float> some_numbers(std::size_t count) {
 
 /// Multiplications and additions of one 1-D transform of this length.
 double transform_flops(std::size_t length) {
-  double flops = 2.0 * static_cast<double>(core::DctTable<float>::size(length));
-  for (; length % 2 == 0; length /= 2) flops += static_cast<double>(length);
-  return flops;
+  using Table = core::DctTable<float>;
+  double flops = 0.0;
+  while (length % 2 == 0) {
+    flops += static_cast<double>(length);
+    length /= 2;
+    const std::size_t products = Table::rotated(length) ? 2 * Table::halving_size(length / 2) : length * length;
+    flops += 2.0 * static_cast<double>(products) + (Table::rotated(length) ? 4.0 * static_cast<double>(length) : 0.0);
+  }
+  return flops + 2.0 * static_cast<double>(length * length);
 }
 
 Part measure_forward(Operator& a) {

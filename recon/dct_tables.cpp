@@ -23,12 +23,27 @@ template <class T>
 std::vector<T> make_dct_table(int length) {
   std::vector<T> values;
   values.reserve(core::DctTable<T>::size(static_cast<std::size_t>(length)));
+  using Table = core::DctTable<T>;
+  const auto whole = static_cast<std::size_t>(length);
+  int odd = length;
+  for (int half = length / 2; odd % 2 == 0; half /= 2) {
+    odd = half;
+    if (!Table::rotated(static_cast<std::size_t>(half))) continue;
+    for (int r = 0; r < half / 2; ++r) {
+      values.push_back(static_cast<T>(std::cos(std::numbers::pi * (2.0 * r + 1.0) / (4.0 * half))));
+    }
+    for (int r = 0; r < half / 2; ++r) {
+      values.push_back(static_cast<T>(std::sin(std::numbers::pi * (2.0 * r + 1.0) / (4.0 * half))));
+    }
+  }
   int n = length;
   int stride = 1;  // coefficient k of the current level is coefficient k * stride of the whole
   while (n % 2 == 0) {
     const int half = n / 2;
-    for (int k = 0; k < half; ++k) {
-      for (int r = 0; r < half; ++r) values.push_back(static_cast<T>(entry(length, (2 * k + 1) * stride, r)));
+    if (Table::dense(static_cast<std::size_t>(half), whole)) {
+      for (int k = 0; k < half; ++k) {
+        for (int r = 0; r < half; ++r) values.push_back(static_cast<T>(entry(length, (2 * k + 1) * stride, r)));
+      }
     }
     n = half;
     stride *= 2;

@@ -34,7 +34,8 @@ recon::Response golden_response(int rows, int cols, std::uint32_t share) {
   return recon::Response::from_dense(rows, cols, values).value();
 }
 
-std::uint64_t golden_frame(recon::BasisKind basis, recon::ConstraintKind constraint, std::uint32_t share) {
+std::uint64_t golden_frame(recon::BasisKind basis, recon::ConstraintKind constraint, std::uint32_t share, int rows = 12,
+                           int cols = 20) {
   recon::Objective objective;
   objective.basis = basis;
   objective.constraint = constraint;
@@ -42,7 +43,8 @@ std::uint64_t golden_frame(recon::BasisKind basis, recon::ConstraintKind constra
   recon::Plan plan;
   plan.iterations = 40;
   plan.rho = 0.5;
-  const auto solver = recon::Reconstructor::create(golden_response(64, 240, share), 12, 20, objective, plan).value();
+  const auto solver =
+      recon::Reconstructor::create(golden_response(64, rows * cols, share), rows, cols, objective, plan).value();
   std::vector<float> y(64), weights(64, 1.0F);
   for (std::size_t m = 0; m < 64; ++m) y[m] = static_cast<float>((m * 37) % 64) / 8.0F;
   weights[10] = 0.0F;
@@ -59,4 +61,7 @@ TEST_CASE("golden bits") {
   CHECK(golden_frame(recon::BasisKind::identity, recon::ConstraintKind::none, 26) == 2098283973060888459ULL);
   CHECK(golden_frame(recon::BasisKind::dct, recon::ConstraintKind::none, 255) == 13088078054024099107ULL);
   CHECK(golden_frame(recon::BasisKind::dct, recon::ConstraintKind::box, 26) == 8333289897048814718ULL);
+  // Sides whose DCT has rotated levels.
+  CHECK(golden_frame(recon::BasisKind::dct, recon::ConstraintKind::box, 60, 24, 40) == 12606849122869241640ULL);
+  CHECK(golden_frame(recon::BasisKind::tv, recon::ConstraintKind::nonnegative, 60, 32, 24) == 6703258194279814339ULL);
 }
