@@ -59,7 +59,7 @@ Sweep SweptEye::sweep(const std::string& scene, std::uint64_t seed, double sigma
   if (case_.basis == recon::BasisKind::identity) {
     const std::vector<float> first = solved(case_, response_, objective(rule), y, factor_);
     result.debiased = nmse_of(debiased(case_, response_, y, first), truth);
-    result.reweighted = nmse_of(reweighted(case_, response_, y, first, 2.0 * rule), truth);
+    result.reweighted = nmse_of(reweighted(case_, response_, y, objective(rule), factor_), truth);
   }
   const auto found = recon::lambda_by_risk(response_, case_.object.rows, case_.object.cols, objective(rule), plan(), y,
                                            sigma, factor_);

@@ -22,7 +22,7 @@ struct Sweep {
   double by_risk = 0.0;           ///< NMSE at the lambda that lambda_by_risk() takes
   double risk_multiple = 1.0;     ///< and that lambda, over the rule's
   double debiased = 0.0;          ///< NMSE after the rule's picture went through debiased(); pixels only
-  double reweighted = 0.0;        ///< and through reweighted() at twice the rule's lambda
+  double reweighted = 0.0;        ///< with reweighted() at the rule's lambda
 
   [[nodiscard]] double best() const;
   [[nodiscard]] double best_multiple() const;
