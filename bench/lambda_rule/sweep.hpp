@@ -37,7 +37,11 @@ class SweptEye {
   /// read noise.
   [[nodiscard]] Sweep sweep(const std::string& scene, std::uint64_t seed, double sigma, bool with_risk);
 
+  /// NMSE at the rule's lambda alone.
+  [[nodiscard]] double nmse_by_rule(const std::string& scene, std::uint64_t seed, double sigma);
+
  private:
+  [[nodiscard]] double rule(double sigma) const;
   [[nodiscard]] std::vector<float> samples(const std::string& scene, const hal::Image& truth, std::uint64_t seed,
                                            double sigma) const;
   [[nodiscard]] double nmse_at(double lambda, const std::vector<float>& y, const hal::Image& truth);
