@@ -44,6 +44,9 @@ hal::Result<void> check_plan(const Plan& plan) {
   }
   if (!std::isfinite(plan.rho) || plan.rho < 0.0)
     return out_of_range("rho", plan.rho, "more than 0, or 0 for the rule");
+  if (!std::isfinite(plan.l1_reweighting) || plan.l1_reweighting < 0.0) {
+    return out_of_range("l1 reweighting", plan.l1_reweighting, "a brightness above 0, or 0 for one pass");
+  }
   if (plan.rank < 0) return out_of_range("rank", plan.rank, "1 or more, or 0 for as many as lambda says");
   return {};
 }
@@ -60,6 +63,9 @@ hal::Result<void> check_pair(const Objective& objective, const Plan& plan) {
   if (objective.epsilon && !bounds) {
     return fail(ErrorCode::usage, "epsilon",
                 std::string(name(plan.solver)) + " has no such bound; these solvers do: adm, omp");
+  }
+  if (plan.l1_reweighting > 0.0 && !(plan.solver == SolverKind::admm && objective.basis == BasisKind::identity)) {
+    return fail(ErrorCode::usage, "l1 reweighting", "needs admm and the identity basis");
   }
   if (plan.solver == SolverKind::tsvd && plan.rank == 0 && !(objective.lambda > 0.0)) {
     return fail(ErrorCode::usage, "tsvd", "needs a rank, or a lambda above 0 (the least square of a singular value)");

@@ -36,6 +36,11 @@ struct Plan {
   int iterations = 100;     ///< exactly this many per frame, 1 .. 1e6; at most, for omp and adm as published
   double rho = 0.0;         ///< ADMM penalty; 0 = by rule (recon/penalty_rule.hpp)
   double relaxation = 1.7;  ///< of admm, 0 < relaxation < 2
+  /// admm with the identity: e > 0 follows the K iterations by K more for min 1/2 ||Ax-y||^2 + lambda sum_j w_j |x_j|,
+  /// w_j = 2 e / (|x_j| + e) with x of the first pass (Candes, Wakin & Boyd 2008, "Enhancing sparsity by reweighted l1
+  /// minimization"). For pictures of few lit pixels, e a tenth of their brightness; docs/lambda-rule.md says when it
+  /// pays. FrameInfo's objective is the weighted one, without a duality gap. 0: one pass.
+  double l1_reweighting = 0.0;
   /// tsvd: how many singular pairs to keep; 0 = those with s^2 >= lambda, which is where tikhonov's filter is a half.
   int rank = 0;
   /// Seeing channels that may have a weight other than one in a frame; -1 = a tenth of them, rounded up. Costs

@@ -93,4 +93,20 @@ std::vector<Case> lambda_cases() {
   return cases;
 }
 
+std::vector<Case> paper_cases() {
+  std::vector<Case> cases;
+  for (Case& c : lambda_cases()) {
+    if (!c.large || c.measured) continue;
+    c.exact = true;
+    c.scenes = c.basis == recon::BasisKind::dct ? std::vector<std::string>{"line-art", "bars"}
+                                                : std::vector<std::string>{"phantom", "line-art"};
+    c.evaluation_sigmas = {std::sqrt(0.1)};
+    for (const int iterations : {60, 100}) {
+      c.iterations = iterations;
+      cases.push_back(c);
+    }
+  }
+  return cases;
+}
+
 }  // namespace compueye::bench

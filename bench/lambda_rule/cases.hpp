@@ -14,6 +14,7 @@ struct Case {
   hal::EyeGeometry eye;
   hal::ObjectPlane object;
   bool measured = false;  ///< a plausible measured response, with y = A x exactly, in place of the drawn one
+  bool exact = false;     ///< y = A x exactly for a drawn response too
   recon::BasisKind basis = recon::BasisKind::identity;
   recon::ConstraintKind constraint = recon::ConstraintKind::box;
   int iterations = 0;
@@ -27,5 +28,8 @@ struct Case {
 
 /// Every eye with every basis, drawn and measured.
 [[nodiscard]] std::vector<Case> lambda_cases();
+
+/// The 80x80 eye as the paper's figures have it: y = A x exactly, sigma^2 = .1, seed 0.
+[[nodiscard]] std::vector<Case> paper_cases();
 
 }  // namespace compueye::bench

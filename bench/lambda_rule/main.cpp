@@ -23,6 +23,7 @@ struct Options {
   bool full = false;
   bool tuning = false;
   bool each = false;
+  bool paper_noise = false;
   std::vector<std::string> only;
 };
 
@@ -50,6 +51,16 @@ std::vector<bench::Sweep> sweep_all(const bench::Case& c, bool tuning) {
   return all;
 }
 
+void print_paper_noise() {
+  for (const bench::Case& c : bench::paper_cases()) {
+    bench::SweptEye eye(c);
+    for (const std::string& scene : c.scenes) {
+      const double nmse = eye.nmse_by_rule(scene, 0, c.evaluation_sigmas.front());
+      fmt::print("{}, {} iterations, {}, sigma^2 = .1: NMSE {:.4f} by rule\n", c.name, c.iterations, scene, nmse);
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -58,9 +69,14 @@ int main(int argc, char** argv) {
   app.add_flag("--full", options.full, "the 80x80 eye too (minutes a case)");
   app.add_flag("--tuning", options.tuning, "the scenes and noise levels that the rule's factors were chosen on");
   app.add_flag("--each", options.each, "a line a scene");
+  app.add_flag("--paper-noise", options.paper_noise, "only the 80x80 eye at the paper's noise, by rule");
   app.add_option("--only", options.only, "only cases whose name contains all of these");
   app.footer("Example: bench_lambda_rule --full --only 80x80 tv measured");
   CLI11_PARSE(app, argc, argv);
+  if (options.paper_noise) {
+    print_paper_noise();
+    return 0;
+  }
   if (!options.tuning) bench::print_evaluation_head();
   for (const bench::Case& c : bench::lambda_cases()) {
     if (!wanted(c, options)) continue;

@@ -30,8 +30,9 @@ recon::Response scaled_columns(const recon::Response& response, const std::vecto
 }  // namespace
 
 std::vector<float> solved(const Case& c, const recon::Response& response, const recon::Objective& objective,
-                          const std::vector<float>& y, std::optional<recon::Factor>& factor) {
+                          const std::vector<float>& y, std::optional<recon::Factor>& factor, double l1_reweighting) {
   recon::Plan plan;
+  plan.l1_reweighting = l1_reweighting;
   plan.iterations = c.iterations;
   const auto solver =
       recon::Reconstructor::create(response, c.object.rows, c.object.cols, objective, plan, factor).value();
@@ -58,16 +59,8 @@ std::vector<float> debiased(const Case& c, const recon::Response& response, cons
 }
 
 std::vector<float> reweighted(const Case& c, const recon::Response& response, const std::vector<float>& y,
-                              const std::vector<float>& x, double lambda) {
-  std::vector<float> factors(x.size());
-  for (std::size_t n = 0; n < x.size(); ++n) factors[n] = (x[n] + lit_above) / lit_above;
-  recon::Objective objective;
-  objective.constraint = recon::ConstraintKind::nonnegative;
-  objective.lambda = lambda;
-  std::optional<recon::Factor> factor;
-  std::vector<float> again = solved(c, scaled_columns(response, factors), objective, y, factor);
-  for (std::size_t n = 0; n < x.size(); ++n) again[n] = std::min(again[n] * factors[n], 1.0F);
-  return again;
+                              const recon::Objective& objective, std::optional<recon::Factor>& factor) {
+  return solved(c, response, objective, y, factor, lit_above);
 }
 
 }  // namespace compueye::bench

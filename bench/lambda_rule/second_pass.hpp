@@ -8,21 +8,18 @@
 
 namespace compueye::bench {
 
-/// What a second solve of the same frame can make of a pixel-sparse picture, with columns of the response scaled so
-/// that the solver as it is does it. Not in the product; docs/lambda-rule.md has the figures.
-
-/// Least squares within the constraint on the pixels above a tenth of white.
+/// Least squares within the constraint on the pixels above a tenth of white. Not in the product; docs/lambda-rule.md
+/// compares it with what is.
 [[nodiscard]] std::vector<float> debiased(const Case& c, const recon::Response& response, const std::vector<float>& y,
                                           const std::vector<float>& x);
 
-/// One pass of reweighted l1, weights e / (x_j + e) with e a tenth of white (Candes, Wakin & Boyd 2008, "Enhancing
-/// sparsity by reweighted l1 minimization"), x >= 0, clipped to white at the end.
+/// The product's second pass, Plan::l1_reweighting at a tenth of white.
 [[nodiscard]] std::vector<float> reweighted(const Case& c, const recon::Response& response, const std::vector<float>& y,
-                                            const std::vector<float>& x, double lambda);
+                                            const recon::Objective& objective, std::optional<recon::Factor>& factor);
 
 /// One frame at lambda, set up and solved.
 [[nodiscard]] std::vector<float> solved(const Case& c, const recon::Response& response,
                                         const recon::Objective& objective, const std::vector<float>& y,
-                                        std::optional<recon::Factor>& factor);
+                                        std::optional<recon::Factor>& factor, double l1_reweighting = 0.0);
 
 }  // namespace compueye::bench

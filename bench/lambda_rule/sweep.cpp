@@ -45,9 +45,7 @@ SweptEye::SweptEye(const Case& c) : case_(c), response_(response_of(c)) {}
 Sweep SweptEye::sweep(const std::string& scene, std::uint64_t seed, double sigma, bool with_risk) {
   const hal::Image truth = sim::render_built_in(scene, case_.object.rows, case_.object.cols, seed).value();
   const std::vector<float> y = samples(scene, truth, seed, sigma);
-  const double rule = recon::lambda_by_rule(response_, case_.object.rows, case_.object.cols, recon::SolverKind::admm,
-                                            case_.basis, sigma)
-                          .value();
+  const double rule = this->rule(sigma);
   Sweep result{scene, seed, sigma, {}, {}, 0.0, 0.0, 1.0, 0.0, 0.0};
   for (int k = -case_.grid_below; k <= case_.grid_above; ++k) {
     result.multiples.push_back(std::pow(case_.grid_step, k));
@@ -59,7 +57,7 @@ Sweep SweptEye::sweep(const std::string& scene, std::uint64_t seed, double sigma
   if (case_.basis == recon::BasisKind::identity) {
     const std::vector<float> first = solved(case_, response_, objective(rule), y, factor_);
     result.debiased = nmse_of(debiased(case_, response_, y, first), truth);
-    result.reweighted = nmse_of(reweighted(case_, response_, y, first, 2.0 * rule), truth);
+    result.reweighted = nmse_of(reweighted(case_, response_, y, objective(rule), factor_), truth);
   }
   const auto found = recon::lambda_by_risk(response_, case_.object.rows, case_.object.cols, objective(rule), plan(), y,
                                            sigma, factor_);
@@ -68,10 +66,21 @@ Sweep SweptEye::sweep(const std::string& scene, std::uint64_t seed, double sigma
   return result;
 }
 
+double SweptEye::nmse_by_rule(const std::string& scene, std::uint64_t seed, double sigma) {
+  const hal::Image truth = sim::render_built_in(scene, case_.object.rows, case_.object.cols, seed).value();
+  return nmse_at(rule(sigma), samples(scene, truth, seed, sigma), truth);
+}
+
+double SweptEye::rule(double sigma) const {
+  return recon::lambda_by_rule(response_, case_.object.rows, case_.object.cols, recon::SolverKind::admm, case_.basis,
+                               sigma)
+      .value();
+}
+
 std::vector<float> SweptEye::samples(const std::string& scene, const hal::Image& truth, std::uint64_t seed,
                                      double sigma) const {
   std::vector<double> signal(static_cast<std::size_t>(response_.rows()));
-  if (case_.measured) {
+  if (case_.measured || case_.exact) {
     const std::vector<double> x(truth.pixels.begin(), truth.pixels.end());
     response_.forward(x, signal);
   } else {

@@ -22,7 +22,7 @@ struct Sweep {
   double by_risk = 0.0;           ///< NMSE at the lambda that lambda_by_risk() takes
   double risk_multiple = 1.0;     ///< and that lambda, over the rule's
   double debiased = 0.0;          ///< NMSE after the rule's picture went through debiased(); pixels only
-  double reweighted = 0.0;        ///< and through reweighted() at twice the rule's lambda
+  double reweighted = 0.0;        ///< with reweighted() at the rule's lambda
 
   [[nodiscard]] double best() const;
   [[nodiscard]] double best_multiple() const;
@@ -37,7 +37,11 @@ class SweptEye {
   /// read noise.
   [[nodiscard]] Sweep sweep(const std::string& scene, std::uint64_t seed, double sigma, bool with_risk);
 
+  /// NMSE at the rule's lambda alone.
+  [[nodiscard]] double nmse_by_rule(const std::string& scene, std::uint64_t seed, double sigma);
+
  private:
+  [[nodiscard]] double rule(double sigma) const;
   [[nodiscard]] std::vector<float> samples(const std::string& scene, const hal::Image& truth, std::uint64_t seed,
                                            double sigma) const;
   [[nodiscard]] double nmse_at(double lambda, const std::vector<float>& y, const hal::Image& truth);

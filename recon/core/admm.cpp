@@ -16,6 +16,7 @@ struct Copy {
   T* z = nullptr;
   T* u = nullptr;
   T threshold = T(0);
+  const T* thresholds = nullptr;  // where set, one a variable in place of the common one
   T lo = T(0);
   T hi = T(0);
 
@@ -29,7 +30,11 @@ struct Copy {
   }
 
   void update(const T* x, std::size_t n, T relaxation) noexcept {
-    relaxed_prox_step(x, z, u, n, relaxation, threshold, lo, hi);
+    if (thresholds == nullptr) {
+      relaxed_prox_step(x, z, u, n, relaxation, threshold, lo, hi);
+    } else {
+      relaxed_prox_step(x, z, u, n, relaxation, thresholds, lo, hi);
+    }
   }
 
   void update_and_measure(const T* x, T* before, std::size_t n, T relaxation, SplitResiduals& residuals) noexcept {
@@ -52,7 +57,8 @@ class Admm {
         pixel_copy_(!sparse_basis_ || problem.constrained || smooth_),
         coefficient_count_(problem.psi.coefficients()),
         before_(memory.take<T>(coefficient_count_)),
-        gap_(problem, problem.measure_gap, memory) {
+        gap_(problem, problem.measure_gap && !reweights(), memory) {
+    if (reweights()) thresholds_ = memory.take<T>(n_);
     if (sparse_basis_) {
       coefficients_ = memory.take<T>(coefficient_count_);
       scratch_ = memory.take<T>(problem.psi.scratch_size());
@@ -71,6 +77,11 @@ class Admm {
     }
     clear();
     SplitResiduals residuals;
+    in_pixels_.thresholds = nullptr;
+    if (reweights()) {
+      for (int k = 0; k < problem_.point.iterations; ++k) iterate(nullptr);
+      reweight();
+    }
     for (int k = 1; k <= problem_.point.iterations; ++k) iterate(k == problem_.point.iterations ? &residuals : nullptr);
     finish(residuals, info);
     deliver(x_, finite_, n_, info, x);
@@ -78,6 +89,28 @@ class Admm {
   }
 
  private:
+  [[nodiscard]] bool reweights() const noexcept { return problem_.l1_reweighting > T(0); }
+
+  /// Pixels that the first pass found lit are shrunk little in the second, dark ones twice as much as before.
+  void reweight() noexcept {
+    const T e = problem_.l1_reweighting, twice = T(2) * in_pixels_.threshold;
+    for (std::size_t k = 0; k < n_; ++k) {
+      const T z = in_pixels_.z[k];
+      thresholds_[k] = twice * e / ((z < T(0) ? -z : z) + e);
+    }
+    in_pixels_.thresholds = thresholds_;
+  }
+
+  /// rho times the sum of threshold times magnitude: lambda ||w x||_1.
+  [[nodiscard]] double weighted_penalty() const noexcept {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < n_; ++k) {
+      const T z = in_pixels_.z[k];
+      sum += static_cast<double>(thresholds_[k]) * static_cast<double>(z < T(0) ? -z : z);
+    }
+    return static_cast<double>(problem_.rho) * sum;
+  }
+
   void set_proximal_maps() noexcept {
     constexpr T unbounded = T(1e30);
     const bool shared = sparse_basis_ && pixel_copy_ && !smooth_;
@@ -137,11 +170,12 @@ class Admm {
       for (std::size_t k = 0; k < n_; ++k) coefficients_[k] = in_basis_.z[k];
     }
     const T* penalised = sparse_basis_ ? coefficients_ : x_;
-    const double penalty =
-        static_cast<double>(problem_.lambda) * static_cast<double>(sum_of_magnitudes(penalised, coefficient_count_));
+    const double penalty = reweights() ? weighted_penalty()
+                                       : static_cast<double>(problem_.lambda) *
+                                             static_cast<double>(sum_of_magnitudes(penalised, coefficient_count_));
     evaluate(step_.samples(), x_, penalty, step_.row_scratch(), info);
-    info.duality_gap = gap_.measure(step_.samples(), x_, basis_dual(), info.objective);
-    residuals.judge(problem_.point.iterations, info);
+    if (!reweights()) info.duality_gap = gap_.measure(step_.samples(), x_, basis_dual(), info.objective);
+    residuals.judge((reweights() ? 2 : 1) * problem_.point.iterations, info);
   }
 
   /// Unscaled, where what the coefficients were is no longer needed.
@@ -162,6 +196,7 @@ class Admm {
   std::size_t coefficient_count_;
   T* before_;
   DualityGap<T> gap_;
+  T* thresholds_ = nullptr;
   T* coefficients_ = nullptr;
   T* scratch_ = nullptr;
   Copy<T> in_basis_;

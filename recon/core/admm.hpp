@@ -15,8 +15,9 @@ namespace compueye::recon::core {
 ///
 /// Exactly problem.point.iterations iterations. Converged by Boyd et al.'s criterion (section 3.3.1), with both
 /// residuals relative: judged so, a rho that is far too small or too large never looks converged. The returned x
-/// satisfies the constraint exactly. `y` and `weights` have problem.channels entries (weights null: all one), x has
-/// problem.pixels().
+/// satisfies the constraint exactly. With problem.l1_reweighting (identity basis) as many iterations again, with
+/// weights from the first pass, see Plan; the objective is then the weighted one, and there is no duality gap. `y` and
+/// `weights` have problem.channels entries (weights null: all one), x has problem.pixels().
 template <class T>
 FrameInfo solve_admm(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
                      float* x) noexcept;

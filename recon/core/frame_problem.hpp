@@ -40,6 +40,7 @@ struct FrameProblem {
   T lambda = T(0);
   T rho = T(1);
   T relaxation = T(1);
+  T l1_reweighting = T(0);          ///< admm in pixels: e of the second pass's weights 2e / (|x| + e); 0: one pass
   T lipschitz = T(1);               ///< at least ||A||_2^2, for fista
   const T* primal_steps = nullptr;  ///< a.cols of them, for cp (recon/step_sizes.hpp)
   const T* dual_steps = nullptr;    ///< a.rows of them, for cp

@@ -24,6 +24,18 @@ COMPUEYE_INLINE void prox_step_of(const T* __restrict x, T* __restrict z, T* __r
 }
 
 template <class T>
+COMPUEYE_INLINE void prox_step_of(const T* __restrict x, T* __restrict z, T* __restrict u, std::size_t n, T relaxation,
+                                  const T* __restrict thresholds, T lo, T hi) {
+  const T rest = T(1) - relaxation;
+  for (std::size_t k = 0; k < n; ++k) {
+    const T t = relaxation * x[k] + rest * z[k] + u[k];
+    const T prox = prox_l1_box(t, thresholds[k], lo, hi);
+    z[k] = flushed(prox);
+    u[k] = flushed(t - prox);
+  }
+}
+
+template <class T>
 COMPUEYE_INLINE void subtract_of(const T* __restrict a, const T* __restrict b, T* __restrict out, std::size_t n) {
   for (std::size_t k = 0; k < n; ++k) out[k] = a[k] - b[k];
 }
@@ -48,6 +60,15 @@ COMPUEYE_MULTIVERSION void relaxed_prox_step(const float* x, float* z, float* u,
 COMPUEYE_MULTIVERSION void relaxed_prox_step(const double* x, double* z, double* u, std::size_t n, double relaxation,
                                              double threshold, double lo, double hi) noexcept {
   prox_step_of(x, z, u, n, relaxation, threshold, lo, hi);
+}
+
+COMPUEYE_MULTIVERSION void relaxed_prox_step(const float* x, float* z, float* u, std::size_t n, float relaxation,
+                                             const float* thresholds, float lo, float hi) noexcept {
+  prox_step_of(x, z, u, n, relaxation, thresholds, lo, hi);
+}
+COMPUEYE_MULTIVERSION void relaxed_prox_step(const double* x, double* z, double* u, std::size_t n, double relaxation,
+                                             const double* thresholds, double lo, double hi) noexcept {
+  prox_step_of(x, z, u, n, relaxation, thresholds, lo, hi);
 }
 
 COMPUEYE_MULTIVERSION void subtract(const float* a, const float* b, float* out, std::size_t n) noexcept {

@@ -22,6 +22,12 @@ void relaxed_prox_step(const float* x, float* z, float* u, std::size_t n, float 
 void relaxed_prox_step(const double* x, double* z, double* u, std::size_t n, double relaxation, double threshold,
                        double lo, double hi) noexcept;
 
+/// The same with a threshold for each variable.
+void relaxed_prox_step(const float* x, float* z, float* u, std::size_t n, float relaxation, const float* thresholds,
+                       float lo, float hi) noexcept;
+void relaxed_prox_step(const double* x, double* z, double* u, std::size_t n, double relaxation,
+                       const double* thresholds, double lo, double hi) noexcept;
+
 /// out = (a - b), the point around which the next quadratic step is taken.
 void subtract(const float* a, const float* b, float* out, std::size_t n) noexcept;
 void subtract(const double* a, const double* b, double* out, std::size_t n) noexcept;

@@ -101,6 +101,13 @@ void add_plan(CLI::App& command, ReconstructOptions& o) {
   command.add_option("--rho", o.rho, "penalty of admm and adm (default: by rule)")
       ->type_name("V")
       ->check(number_where([](double v) { return v > 0.0; }, "a finite number above 0"));
+  command
+      .add_option(
+          "--reweight", o.reweight,
+          "admm in pixels: as many iterations again with weights 2V / (|x| + V), for pictures of few lit pixels; "
+          "V about a tenth of their brightness")
+      ->type_name("V")
+      ->check(number_where([](double v) { return v > 0.0; }, "a finite number above 0"));
   command.add_option("--relaxation", o.relaxation, "of admm and cp (default 1.7)")
       ->type_name("V")
       ->check(number_where([](double v) { return v > 0.0 && v < 2.0; }, "a number above 0 and below 2"));
@@ -182,6 +189,7 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
   problem.plan.solver = kind_named(solver_names(), o.solver);
   if (o.as_published) problem.plan.solver = recon::SolverKind::adm_as_published;
   problem.plan.rank = o.rank.value_or(0);
+  problem.plan.l1_reweighting = o.reweight.value_or(0.0);
   problem.plan.measure_gap = true;
   problem.plan.precision = o.precision == "f64" ? recon::Precision::f64 : recon::Precision::f32;
   problem.plan.iterations = o.iterations.value_or(problem.plan.iterations);

@@ -28,6 +28,7 @@ struct ReconstructOptions {
   std::optional<double> lambda;
   std::optional<double> sigma;  ///< of a sample of weight one
   bool lambda_from_samples = false;
+  std::optional<double> reweight;
   std::optional<double> epsilon;  ///< bound of ||W^(1/2)(Ax-y)||: adm and omp
   std::optional<int> rank;        ///< tsvd
   bool as_published = false;      ///< adm

@@ -104,6 +104,11 @@ Result check_solver_options(const ReconstructOptions& o) {
       .and_then([&] {
         return only_with(o.relaxation.has_value(), "--relaxation", "over-relaxation", o.solver, {"admm", "cp"});
       })
+      .and_then([&] { return only_with(o.reweight.has_value(), "--reweight", "a second pass", o.solver, {"admm"}); })
+      .and_then([&] {
+        if (!o.reweight || o.basis == "identity") return Result{};
+        return usage("--reweight", "is for pictures of few lit pixels, expected --basis identity");
+      })
       .and_then([&] { return check_distance(o); });
 }
 

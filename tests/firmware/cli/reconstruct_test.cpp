@@ -269,3 +269,16 @@ TEST_CASE("lambda from the samples needs their noise, and a first frame without 
                1, {"--lambda-from-samples", "first frame"});
   CHECK_FALSE(std::filesystem::exists(folder / "x.npy"));
 }
+
+TEST_CASE("reweighting makes a pixel-sparse picture better, and is refused elsewhere") {
+  const TemporaryFolder folder;
+  put_frames(folder, 1);
+  const std::string command = std::string(small_eye) + "--sigma 0.02 --box 0,1 --truth truth.npy --out x.npy ";
+  const auto nmse = [&](std::string_view more) {
+    return json_from(command + "--json " + std::string(more), folder.path())["per_frame"][0]["nmse"].get<double>();
+  };
+  CHECK(nmse("--reweight 0.1") < 0.5 * nmse(""));
+  check_failed(run_compueye(command + "--reweight 0.1 --basis dct", folder.path()), 2, {"--reweight", "identity"});
+  check_failed(run_compueye(command + "--reweight 0.1 --solver fista", folder.path()), 2, {"--reweight", "admm"});
+  check_failed(run_compueye(command + "--reweight 0", folder.path()), 2, {"--reweight", "'0'", "above 0"});
+}
