@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "bench/bandwidth.hpp"
 #include "bench/eyes.hpp"
+#include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/app/report/table.hpp"
@@ -212,27 +214,37 @@ firmware::Json json_of(const bench::Eye& eye, const std::vector<Part>& parts) {
   return json;
 }
 
+/// The parts of a frame on both eyes.
+struct Measured {
+  double bandwidth = 0.0;
+  std::vector<std::pair<bench::Eye, std::vector<Part>>> eyes;
+};
+
+hal::Result<Measured> measure_all() {
+  Measured measured{bench::read_bandwidth(), {}};
+  for (const bench::Eye& eye : {bench::eye_8x8(), bench::eye_80x80()}) {
+    auto parts = measure(eye);
+    if (!parts) return tl::unexpected(std::move(parts.error()));
+    measured.eyes.emplace_back(eye, std::move(*parts));
+  }
+  return measured;
+}
+
+std::string whole_text(const Measured& measured) {
+  std::string text = fmt::format("one core reads memory at {:.2f} GB/s\n\n", measured.bandwidth);
+  for (const auto& [eye, parts] : measured.eyes) text += table_text(eye, parts, measured.bandwidth);
+  return text;
+}
+
+std::string whole_json(const Measured& measured) {
+  firmware::Json json;
+  json["read_bandwidth_gigabytes_per_second"] = measured.bandwidth;
+  for (const auto& [eye, parts] : measured.eyes) json["eyes"].push_back(json_of(eye, parts));
+  return firmware::json_text(json);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bench::Output output = bench::output_of(argc, argv);
-  if (output == bench::Output::refused) {
-    fmt::print(stderr, "usage: bench_frame [--json]\n");
-    return 2;
-  }
-  const double bandwidth = bench::read_bandwidth();
-  firmware::Json json;
-  json["read_bandwidth_gigabytes_per_second"] = bandwidth;
-  std::string text = fmt::format("one core reads memory at {:.2f} GB/s\n\n", bandwidth);
-  for (const bench::Eye& eye : {bench::eye_8x8(), bench::eye_80x80()}) {
-    const auto parts = measure(eye);
-    if (!parts) {
-      fmt::print(stderr, "{}\n", parts.error().text());
-      return 1;
-    }
-    text += table_text(eye, *parts, bandwidth);
-    json["eyes"].push_back(json_of(eye, *parts));
-  }
-  fmt::print("{}", output == bench::Output::json ? firmware::json_text(json) : text);
-  return 0;
+  return bench::print_measured(argc, argv, "bench_frame", measure_all, whole_text, whole_json);
 }

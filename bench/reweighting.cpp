@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/eyes.hpp"
+#include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/app/report/table.hpp"
@@ -175,16 +176,5 @@ std::string json_text(const std::vector<Figures>& all) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bench::Output output = bench::output_of(argc, argv);
-  if (output == bench::Output::refused) {
-    fmt::print(stderr, "usage: bench_reweighting [--json]\n");
-    return 2;
-  }
-  const auto all = measure_all();
-  if (!all) {
-    fmt::print(stderr, "{}\n", all.error().text());
-    return 1;
-  }
-  fmt::print("{}", output == bench::Output::json ? json_text(*all) : table_text(*all));
-  return 0;
+  return bench::print_measured(argc, argv, "bench_reweighting", measure_all, table_text, json_text);
 }

@@ -8,6 +8,7 @@
 #include "recon/core/cholesky.hpp"
 #include "recon/core/packed_symmetric.hpp"
 #include "recon/mirror_symmetry.hpp"
+#include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
@@ -33,10 +34,7 @@ recon::Response lattice_response(int grid_rows, int grid_cols, int image_rows, i
 }
 
 Eigen::MatrixXd direct_inverse(const recon::Response& a, double rho) {
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(a.rows(), a.cols());
-  for (int m = 0; m < a.rows(); ++m) {
-    a.for_each_in_row(m, [&](std::int32_t n, double v) { dense(m, n) = v; });
-  }
+  const Eigen::MatrixXd dense = dense_matrix(a);
   Eigen::MatrixXd gram = dense * dense.transpose();
   gram.diagonal().array() += rho;
   return gram.fullPivLu().inverse();

@@ -5,20 +5,13 @@
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;
 
 namespace {
-
-Eigen::MatrixXd dense(const recon::Response& a) {
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(a.rows(), a.cols());
-  for (int m = 0; m < a.rows(); ++m) {
-    a.for_each_in_row(m, [&](std::int32_t n, double v) { matrix(m, n) = v; });
-  }
-  return matrix;
-}
 
 double norm(const Eigen::MatrixXd& matrix) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues()[0];
@@ -30,7 +23,7 @@ TEST_CASE("the gradient step's bound lies just above the squared norm") {
   Random random(101);
   for (int trial = 0; trial < 20; ++trial) {
     const auto a = random_response(random, 1 + random.below(20), 1 + random.below(30), 0.6);
-    const double exact = norm(dense(a)) * norm(dense(a));
+    const double exact = norm(dense_matrix(a)) * norm(dense_matrix(a));
     const double bound = recon::squared_norm_bound(a);
     CHECK(bound >= exact);
     CHECK(bound <= 1.02 * exact + 1e-300);
@@ -46,7 +39,7 @@ TEST_CASE("primal-dual steps keep the preconditioned operator's norm at one or b
       const auto a = any.select_rows(seeing, std::vector<double>(seeing.size(), unit));
       const auto steps = recon::primal_dual_steps(a, 1.0);
       Eigen::MatrixXd scaled = Eigen::MatrixXd::Zero(a.rows() + a.cols(), a.cols());
-      const Eigen::MatrixXd matrix = dense(a);
+      const Eigen::MatrixXd matrix = dense_matrix(a);
       for (int n = 0; n < a.cols(); ++n) {
         const double primal = std::sqrt(steps.primal[static_cast<std::size_t>(n)]);
         for (int m = 0; m < a.rows(); ++m) {

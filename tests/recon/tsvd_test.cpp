@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "recon/singular_modes.hpp"
+#include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"
@@ -13,14 +14,6 @@ using namespace compueye::tests;
 using recon::SolverKind;
 
 namespace {
-
-Eigen::MatrixXd dense(const recon::Response& a) {
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(a.rows(), a.cols());
-  for (int m = 0; m < a.rows(); ++m) {
-    a.for_each_in_row(m, [&](std::int32_t n, double v) { matrix(m, n) = v; });
-  }
-  return matrix;
-}
 
 /// Mirror images on both axes of a random quadrant's rows.
 recon::Response symmetric_response(int side) {
@@ -56,7 +49,7 @@ SolvedFrame solve_tsvd(const recon::Response& a, int rows, int cols, int rank, c
 TEST_CASE("singular pairs are those of a dense decomposition, parity classes or none") {
   Random random(18);
   for (const recon::Response& a : {symmetric_response(6), random_response(random, 12, 36, 0.5)}) {
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense(a), Eigen::ComputeThinU);
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense_matrix(a), Eigen::ComputeThinU);
     const auto modes = recon::singular_modes(a, 6, 6, 10, 0.0, {});
     REQUIRE(modes.has_value());
     REQUIRE(modes->values.size() == 10);
@@ -66,7 +59,7 @@ TEST_CASE("singular pairs are those of a dense decomposition, parity classes or 
     for (Eigen::Index k = 0; k < 10; ++k) {
       const double s = modes->values[static_cast<std::size_t>(k)];
       CHECK(s == doctest::Approx(svd.singularValues()[k]).epsilon(1e-9));
-      CHECK((dense(a) * dense(a).transpose() * left.col(k) - s * s * left.col(k)).norm() < 1e-9 * s * s);
+      CHECK((dense_matrix(a) * dense_matrix(a).transpose() * left.col(k) - s * s * left.col(k)).norm() < 1e-9 * s * s);
     }
   }
 }
@@ -75,7 +68,7 @@ TEST_CASE("tsvd is the truncated decomposition's answer at every rank") {
   Random random(19);
   for (const recon::Response& a : {symmetric_response(6), random_response(random, 14, 36, 0.6)}) {
     const auto y = random_vector(random, a.rows(), 0.0, 3.0);
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense(a), Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense_matrix(a), Eigen::ComputeThinU | Eigen::ComputeThinV);
     const auto yf = to_float(y);
     for (const int rank : {1, 2, 7, 12}) {
       Eigen::VectorXd x = Eigen::VectorXd::Zero(36);
@@ -90,7 +83,7 @@ TEST_CASE("tsvd is the truncated decomposition's answer at every rank") {
       CHECK(frame.info.iterations == 1);
       CHECK(frame.info.health == recon::Health::converged);
       double squared = 0.0;
-      const Eigen::VectorXd residual = dense(a) * x - Eigen::Map<const Eigen::VectorXd>(y.data(), a.rows());
+      const Eigen::VectorXd residual = dense_matrix(a) * x - Eigen::Map<const Eigen::VectorXd>(y.data(), a.rows());
       squared = residual.squaredNorm();
       CHECK(frame.info.objective == doctest::Approx(0.5 * squared).epsilon(1e-5));
     }
@@ -106,7 +99,7 @@ TEST_CASE("tsvd with weights is the weighted fit within the leading pairs") {
   weights[2] = weights[9] = weights[23] = 0.0F;
   weights[5] = 0.25F;
   weights[6] = 0.75F;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense(a), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense_matrix(a), Eigen::ComputeThinU | Eigen::ComputeThinV);
   for (const int rank : {3, 10, 18}) {
     const Eigen::MatrixXd u = svd.matrixU().leftCols(rank);
     Eigen::VectorXd w(24), b(24);
@@ -123,7 +116,7 @@ TEST_CASE("tsvd with weights is the weighted fit within the leading pairs") {
 TEST_CASE("the rank follows lambda where none is given, and impossible ones are refused by name") {
   Random random(21);
   const auto a = random_response(random, 12, 36, 0.6);
-  const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(dense(a)).singularValues();
+  const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(dense_matrix(a)).singularValues();
   const auto by_lambda = recon::singular_modes(a, 6, 6, 0, s[4] * s[4] * 0.999, {});
   REQUIRE(by_lambda.has_value());
   CHECK(by_lambda->values.size() == 5);
