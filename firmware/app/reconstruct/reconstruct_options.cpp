@@ -163,8 +163,8 @@ std::string reconstruct_footer() {
          "Examples:\n"
          "  compueye response --board boards/sim-8x8 --out A.mtx\n"
          "  compueye reconstruct --response A.mtx --samples y.npy --size 16x16 --box 0,1 --sigma 0.002 --png x.png\n"
-         "  compueye reconstruct --response A.mtx --samples y.npy --size 16x16 --solver adm --epsilon 0.02 "
-         "--nonnegative\n"
+         "  compueye reconstruct --response A.mtx --samples y.npy --size 16x16 --solver adm --epsilon 0.02 \\\n"
+         "                       --iterations 2000 --nonnegative\n"
          "  compueye reconstruct --response A.npy --samples y.npy --size 160x160 --basis dct --box 0,1 --sigma 0.32 "
          "\\\n"
          "                       --weights w.npy --out x.npy --truth truth.npy --json";

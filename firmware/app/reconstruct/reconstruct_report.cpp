@@ -162,7 +162,7 @@ Json frame_json(const FrameRecord& record) {
 std::string report_text(const ReconstructReport& r) {
   Table table({{"figure", Align::left}, {"value", Align::left}});
   table.add({"operating point",
-             fmt::format("{}, {} basis, {} operator, {}, {} iterations", name(r.point.solver), name(r.point.basis),
+             fmt::format("{}, {} basis, A as {}, {}, {} iterations", name(r.point.solver), name(r.point.basis),
                          name(r.point.op), name_of(r.point.precision), r.point.iterations)});
   table.add({"constraint", constraint_text(r.objective)});
   table.add({distance_name(r), distance_text(r)});
