@@ -16,10 +16,11 @@
 #include "firmware/app/report/table.hpp"
 #include "recon/core/dct.hpp"
 #include "recon/core/linear_operator.hpp"
-#include "recon/core/packed_symmetric.hpp"
 #include "recon/core/proximal.hpp"
 #include "recon/core/vector_sums.hpp"
 #include "recon/dct_tables.hpp"
+#include "recon/mirror_symmetry.hpp"
+#include "recon/parity_classes.hpp"
 #include "recon/problem_tables.hpp"
 #include "recon/reconstructor.hpp"
 
@@ -97,13 +98,18 @@ Part measure_adjoint(Operator& a) {
   return {"A adjoint", bench::median_ms(work), static_cast<double>(a.tables.bytes()) + vectors, a.flops()};
 }
 
-Part measure_inverse(const recon::Factor& factor) {
-  const core::PackedSymmetric<float> h{static_cast<std::size_t>(factor.order), factor.inverse.data()};
+Part measure_inverse(const recon::Response& seeing, const bench::Eye& eye, const recon::Factor& factor) {
+  recon::OwnedTables<float> tables;
+  recon::fill_inverse(
+      recon::ParityClasses(seeing.rows(), recon::find_mirror_symmetry(seeing, eye.plane.rows, eye.plane.cols)),
+      factor.inverse, tables);
+  const core::ClassInverse<float>& h = tables.problem.inverse;
   const auto x = some_numbers(h.order);
-  std::vector<float> y(h.order);
+  std::vector<float> y(h.order), scratch(h.scratch_size());
   const auto entries = static_cast<double>(factor.inverse.size());
-  return {"inverse product", bench::median_ms([&] { core::multiply(h, x.data(), y.data()); }),
-          4.0 * (entries + 2.0 * static_cast<double>(h.order)), 4.0 * entries};
+  const auto shares = static_cast<double>(tables.class_share.size());
+  return {"inverse product", bench::median_ms([&] { core::multiply(h, x.data(), y.data(), scratch.data()); }),
+          4.0 * (entries + 2.0 * static_cast<double>(h.order)) + 2.0 * 8.0 * shares, 4.0 * (entries + shares)};
 }
 
 Part measure_dct(int rows, int cols) {
@@ -165,8 +171,9 @@ hal::Result<std::vector<Part>> measure(const bench::Eye& eye) {
   plan.max_reweighted = 0;
   const auto solver = recon::Reconstructor::create(*response, eye.plane.rows, eye.plane.cols, objective, plan);
   if (!solver) return tl::unexpected(solver.error());
-  Operator a(response->select_rows(response->seeing_rows()), eye);
-  std::vector<Part> parts{measure_forward(a), measure_adjoint(a), measure_inverse(solver->factor()),
+  const recon::Response seeing = response->select_rows(response->seeing_rows());
+  Operator a(seeing, eye);
+  std::vector<Part> parts{measure_forward(a), measure_adjoint(a), measure_inverse(seeing, eye, solver->factor()),
                           measure_dct(eye.plane.rows, eye.plane.cols), measure_proximal(a.view().cols)};
   auto whole = measure_whole(*response, eye.plane.rows, eye.plane.cols, objective, solver->plan(), solver->factor());
   if (!whole) return tl::unexpected(whole.error());

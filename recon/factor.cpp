@@ -66,9 +66,9 @@ hal::Result<void> check_condition(const std::vector<ClassNorms>& classes, bool d
 }
 
 hal::Result<void> invert_blocks(ParityGram& gram, double rho, double rounding, const Progress& progress) {
-  std::vector<ClassNorms> norms(gram.classes());
+  std::vector<ClassNorms> norms(gram.classes().count());
   std::atomic<bool> definite{true};
-  const bool inverted = on_all_cores(static_cast<int>(gram.classes()), "inverse", progress, [&] {
+  const bool inverted = on_all_cores(static_cast<int>(gram.classes().count()), "inverse", progress, [&] {
     return [&](int c) {
       const auto at = static_cast<std::size_t>(c);
       if (!invert(gram.block(at), rho, norms[at])) definite = false;
@@ -78,20 +78,15 @@ hal::Result<void> invert_blocks(ParityGram& gram, double rho, double rounding, c
   return hal::fail(hal::ErrorCode::interrupted, "set-up", "stopped before the factor was finished");
 }
 
-/// Row i of the inverse from column i on, into `out`.
-template <class T>
-void expand_from_diagonal(const ParityGram& inverse, int i, T* out) {
-  for (int j = i; j < inverse.order(); ++j) {
-    double sum = 0.0;
-    for (std::size_t c = 0; c < inverse.classes(); ++c) {
-      const int p = inverse.index(c, i), q = inverse.index(c, j);
-      if (p >= 0 && q >= 0) sum += inverse.share(c, i) * inverse.share(c, j) * inverse.block(c)(q, p);
-    }
-    out[j - i] = static_cast<T>(sum);
-  }
-}
-
 }  // namespace
+
+std::size_t factor_size(const ParityClasses& classes) noexcept {
+  std::size_t total = 0;
+  for (std::size_t c = 0; c < classes.count(); ++c) {
+    total += core::PackedSymmetric<float>::size(static_cast<std::size_t>(classes.order(c)));
+  }
+  return total;
+}
 
 template <class T>
 hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols, MetricKind metric,
@@ -100,12 +95,13 @@ hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_row
   constexpr double rounding = 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon());
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
   if (auto done = invert_blocks(gram, rho, rounding, progress); !done) return tl::unexpected(done.error());
-  const auto order = static_cast<std::size_t>(gram.order());
-  std::vector<T> packed(core::PackedSymmetric<T>::size(order));
-  T* row = packed.data();
-  for (std::size_t i = 0; i < order; ++i) {
-    expand_from_diagonal(gram, static_cast<int>(i), row);
-    row += order - i;
+  std::vector<T> packed;
+  packed.reserve(factor_size(gram.classes()));
+  for (std::size_t c = 0; c < gram.classes().count(); ++c) {
+    const Matrix& block = gram.block(c);
+    for (Eigen::Index i = 0; i < block.rows(); ++i) {
+      for (Eigen::Index j = i; j < block.cols(); ++j) packed.push_back(static_cast<T>(block(i, j)));
+    }
   }
   return packed;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string_view>
@@ -26,17 +27,23 @@ enum class MetricKind : std::uint8_t { identity, smoothing };
   return solver == SolverKind::admm || solver == SolverKind::adm || solver == SolverKind::tikhonov;
 }
 
-/// The inverse that makes a frame cheap: (A K0^-1 A' + rho I)^-1 of the seeing rows, made in double, kept in float32 as
-/// a packed upper triangle by rows. Worth storing: it is the slow part of setting up a solver.
+/// The inverse that makes a frame cheap: (A K0^-1 A' + rho I)^-1 of the seeing rows, made in double, kept in float32: a
+/// packed upper triangle by rows for each parity class, one after the other. Worth storing: it is the slow part of
+/// setting up a solver.
 struct Factor {
   double rho = 0.0;
   int order = 0;               ///< number of seeing rows
-  std::vector<float> inverse;  ///< order * (order + 1) / 2 values
+  std::vector<float> inverse;  ///< factor_size() of its classes
   MetricKind metric = MetricKind::identity;
 };
 
-/// (A K0^-1 A' + rho I)^-1 computed in double, packed, rounded once to T. A mirror-symmetric eye falls into its parity
-/// classes, which cost a sixteenth. `seeing` has no blind rows and lies on an image_rows x image_cols picture; rho > 0.
+class ParityClasses;
+
+/// Values that the triangles of all classes take.
+[[nodiscard]] std::size_t factor_size(const ParityClasses& classes) noexcept;
+
+/// (A K0^-1 A' + rho I)^-1 computed in double, packed as Factor::inverse is, rounded once to T. `seeing` has no blind
+/// rows and lies on an image_rows x image_cols picture; rho > 0.
 /// Errors: interrupted; out_of_range when rho is too small for the matrix to be inverted in double or its inverse to
 /// be kept in T (condition number times rounding error of T above a half).
 template <class T>

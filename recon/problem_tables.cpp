@@ -12,6 +12,7 @@
 #include "recon/dct_tables.hpp"
 #include "recon/fourier_tables.hpp"
 #include "recon/mirror_symmetry.hpp"
+#include "recon/parity_classes.hpp"
 #include "recon/singular_modes.hpp"
 #include "recon/smoothing.hpp"
 #include "recon/step_sizes.hpp"
@@ -173,6 +174,28 @@ void fill_choice(const Response& seeing, const Objective& objective, const Plan&
 }
 
 template <class T>
+void fill_inverse(const ParityClasses& classes, const std::vector<T>& values, OwnedTables<T>& tables) {
+  core::ClassInverse<T>& inverse = tables.problem.inverse;
+  inverse.order = static_cast<std::size_t>(classes.rows());
+  inverse.classes = classes.count();
+  for (std::size_t c = 0; c < classes.count() && classes.count() > 1; ++c) {
+    for (int m = 0; m < classes.rows(); ++m) {
+      tables.class_index.push_back(classes.index(c, m));
+      tables.class_share.push_back(static_cast<T>(classes.share(c, m)));
+    }
+  }
+  std::size_t first = 0;
+  for (std::size_t c = 0; c < classes.count(); ++c) {
+    auto& part = inverse.parts[c];
+    part.matrix = {static_cast<std::size_t>(classes.order(c)), values.data() + first};
+    first += core::PackedSymmetric<T>::size(part.matrix.order);
+    if (classes.count() == 1) continue;
+    part.index = tables.class_index.data() + c * inverse.order;
+    part.share = tables.class_share.data() + c * inverse.order;
+  }
+}
+
+template <class T>
 hal::Result<void> fill_modes(const Response& seeing, const Objective& objective, const Plan& plan,
                              const Progress& progress, OwnedTables<T>& tables) {
   core::FrameProblem<T>& problem = tables.problem;
@@ -186,6 +209,8 @@ hal::Result<void> fill_modes(const Response& seeing, const Objective& objective,
   return {};
 }
 
+template void fill_inverse(const ParityClasses&, const std::vector<float>&, OwnedTables<float>&);
+template void fill_inverse(const ParityClasses&, const std::vector<double>&, OwnedTables<double>&);
 template hal::Result<void> fill_modes(const Response&, const Objective&, const Plan&, const Progress&,
                                       OwnedTables<float>&);
 template hal::Result<void> fill_modes(const Response&, const Objective&, const Plan&, const Progress&,

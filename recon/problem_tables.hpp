@@ -22,6 +22,8 @@ struct OwnedTables {
   std::vector<T> col_table;
   std::vector<T> metric;
   std::vector<T> inverse;
+  std::vector<std::int32_t> class_index;
+  std::vector<T> class_share;
   std::vector<T> primal_steps;
   std::vector<T> dual_steps;
   std::vector<T> atom_norms;
@@ -31,9 +33,9 @@ struct OwnedTables {
 
   [[nodiscard]] std::size_t bytes() const noexcept {
     return (values.size() + row_table.size() + col_table.size() + metric.size() + inverse.size() + primal_steps.size() +
-            dual_steps.size() + atom_norms.size() + modes.size() + mode_weights.size()) *
+            dual_steps.size() + atom_norms.size() + modes.size() + mode_weights.size() + class_share.size()) *
                sizeof(T) +
-           (row_start.size() + columns.size()) * sizeof(std::uint32_t) + sums.bytes();
+           (row_start.size() + columns.size() + class_index.size()) * sizeof(std::uint32_t) + sums.bytes();
   }
 };
 
@@ -51,6 +53,10 @@ void fill_basis(BasisKind kind, int image_rows, int image_cols, OwnedTables<T>& 
 /// and fill_basis().
 template <class T>
 void fill_choice(const Response& seeing, const Objective& objective, const Plan& plan, OwnedTables<T>& tables);
+
+/// Points problem.inverse at `values`, which are packed as Factor::inverse is.
+template <class T>
+void fill_inverse(const ParityClasses& classes, const std::vector<T>& values, OwnedTables<T>& tables);
 
 /// The singular pairs that tsvd keeps. Errors: those of singular_modes().
 template <class T>

@@ -18,7 +18,9 @@
 #include "recon/core/tikhonov.hpp"
 #include "recon/core/tsvd.hpp"
 #include "recon/core/workspace.hpp"
+#include "recon/mirror_symmetry.hpp"
 #include "recon/number_text.hpp"
+#include "recon/parity_classes.hpp"
 #include "recon/penalty_rule.hpp"
 #include "recon/problem_checks.hpp"
 #include "recon/problem_tables.hpp"
@@ -100,7 +102,6 @@ struct Reconstructor::Tables {
     tables.problem.seeing = seeing.data();
     tables.problem.channels = static_cast<std::size_t>(channels);
     tables.problem.max_reweighted = static_cast<std::size_t>(plan.max_reweighted);
-    tables.problem.inverse.order = seeing.size();
     if (plan.solver == SolverKind::tsvd) {
       return fill_modes(sees, objective, plan, progress, tables).map([&] {
         plan.rank = static_cast<int>(tables.problem.modes.rank);
@@ -116,6 +117,8 @@ struct Reconstructor::Tables {
     factor.rho = plan.rho;
     factor.order = static_cast<int>(seeing.size());
     std::vector<T>& inverse = inverse_of(tables);
+    const ParityClasses classes(sees.rows(), find_mirror_symmetry(sees, image_rows, image_cols));
+    if (stored && stored->inverse.size() != factor_size(classes)) return stale(*stored);
     if (stored && std::is_same_v<T, float>) {
       factor.inverse = std::move(stored->inverse);
     } else {
@@ -123,7 +126,7 @@ struct Reconstructor::Tables {
       if (!made) return tl::unexpected(made.error());
       inverse = std::move(*made);
     }
-    tables.problem.inverse.values = inverse.data();
+    fill_inverse(classes, inverse, tables);
     return {};
   }
 
@@ -132,9 +135,11 @@ struct Reconstructor::Tables {
 
   [[nodiscard]] hal::Result<void> check_stored(const Factor& stored) const {
     const bool fits = uses_factor(plan.solver) && stored.metric == metric_of(objective.basis) &&
-                      stored.rho == plan.rho && stored.order == static_cast<int>(seeing.size()) &&
-                      stored.inverse.size() == core::PackedSymmetric<float>::size(seeing.size());
-    if (fits) return {};
+                      stored.rho == plan.rho && stored.order == static_cast<int>(seeing.size());
+    return fits ? hal::Result<void>{} : stale(stored);
+  }
+
+  [[nodiscard]] hal::Result<void> stale(const Factor& stored) const {
     return fail(ErrorCode::stale, "factor",
                 "was made for rho " + number_text(stored.rho) + " and " + std::to_string(stored.order) +
                     " seeing rows, this problem has rho " + number_text(plan.rho) + " and " +

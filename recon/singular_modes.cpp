@@ -62,8 +62,8 @@ hal::Result<ModeTable> singular_modes(const Response& seeing, int image_rows, in
                                       double least_square, const Progress& progress) {
   ParityGram gram(seeing, image_rows, image_cols, MetricKind::identity);
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
-  std::vector<Eigen::VectorXd> squares(gram.classes());
-  const bool done = on_all_cores(static_cast<int>(gram.classes()), "singular values", progress, [&] {
+  std::vector<Eigen::VectorXd> squares(gram.classes().count());
+  const bool done = on_all_cores(static_cast<int>(gram.classes().count()), "singular values", progress, [&] {
     return [&](int c) {
       const auto at = static_cast<std::size_t>(c);
       if (gram.block(at).size() == 0) return;
@@ -76,14 +76,14 @@ hal::Result<ModeTable> singular_modes(const Response& seeing, int image_rows, in
   const auto modes = chosen_modes(sorted_modes(squares), rank, least_square);
   if (!modes) return tl::unexpected(modes.error());
   ModeTable table;
-  table.order = gram.order();
+  table.order = gram.classes().rows();
   for (const Mode& mode : *modes) table.values.push_back(std::sqrt(mode.square));
   table.left.reserve(static_cast<std::size_t>(table.order) * modes->size());
   for (int m = 0; m < table.order; ++m) {
     for (const Mode& mode : *modes) {
-      const int p = gram.index(mode.parity_class, m);
-      table.left.push_back(p < 0 ? 0.0
-                                 : gram.share(mode.parity_class, m) * gram.block(mode.parity_class)(p, mode.column));
+      const int p = gram.classes().index(mode.parity_class, m);
+      table.left.push_back(
+          p < 0 ? 0.0 : gram.classes().share(mode.parity_class, m) * gram.block(mode.parity_class)(p, mode.column));
     }
   }
   return table;

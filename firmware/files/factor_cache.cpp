@@ -22,7 +22,7 @@ using hal::ErrorCode;
 using hal::Result;
 
 constexpr char magic[8] = {'C', 'E', 'Y', 'E', 'F', 'A', 'C', 'T'};
-constexpr std::uint32_t format_version = 2;
+constexpr std::uint32_t format_version = 3;
 constexpr int max_order = 46340;  // its square still fits in 32 bits; 4 GiB of factor
 
 struct Header {
@@ -32,16 +32,17 @@ struct Header {
   std::uint64_t response_hash;
   std::uint64_t rho_bits;
   std::uint64_t metric;
+  std::uint64_t values;  // of the payload; not part of the key
   std::uint64_t payload_checksum;
   std::uint64_t header_checksum;  // of everything above
 };
-static_assert(sizeof(Header) == 56);
+static_assert(sizeof(Header) == 64);
 
 std::uint64_t checksum_of(const Header& header) {
   return XXH3_64bits(&header, offsetof(Header, header_checksum));
 }
 
-Header header_for(const FactorKey& key, std::uint64_t payload_checksum) {
+Header header_for(const FactorKey& key, std::uint64_t values, std::uint64_t payload_checksum) {
   Header header{};
   std::memcpy(header.magic, magic, sizeof magic);
   header.version = format_version;
@@ -49,12 +50,14 @@ Header header_for(const FactorKey& key, std::uint64_t payload_checksum) {
   header.response_hash = key.response_hash;
   header.rho_bits = std::bit_cast<std::uint64_t>(key.rho);
   header.metric = static_cast<std::uint64_t>(key.metric);
+  header.values = values;
   header.payload_checksum = payload_checksum;
   header.header_checksum = checksum_of(header);
   return header;
 }
 
-std::size_t packed_size(int order) {
+/// Of the whole matrix; a symmetric eye's classes take a quarter.
+std::size_t most_values(int order) {
   const auto n = static_cast<std::size_t>(order);
   return n * (n + 1) / 2;
 }
@@ -125,7 +128,7 @@ Result<std::uint64_t> read_payload(const FileDescriptor& file, const std::filesy
 }  // namespace
 
 std::filesystem::path factor_path(const std::filesystem::path& folder, const FactorKey& key) {
-  const Header header = header_for(key, 0);
+  const Header header = header_for(key, 0, 0);
   constexpr std::string_view digits = "0123456789abcdef";
   std::string hex(16, '0');
   std::uint64_t rest = header.header_checksum;
@@ -142,10 +145,13 @@ Result<recon::Factor> load_factor(const std::filesystem::path& folder, const Fac
   auto got = read_some(*file, path, std::as_writable_bytes(std::span(&header, 1)));
   if (!got) return tl::unexpected(std::move(got.error()));
   recon::Factor factor{key.rho, key.order, {}, key.metric};
-  const std::size_t count = packed_size(key.order);
-  const std::uint64_t expected = sizeof header + count * sizeof(float);
-  if (*got != sizeof header) return wrong_length(path, expected, "only " + std::to_string(*got));
+  if (*got != sizeof header) return wrong_length(path, sizeof header, "only " + std::to_string(*got));
   if (auto ok = check_header(path, header, key); !ok) return tl::unexpected(std::move(ok.error()));
+  const auto count = static_cast<std::size_t>(header.values);
+  if (count == 0 || count > most_values(key.order)) {
+    return hal::fail(ErrorCode::bad_format, path.string(), "is damaged: its header tells an impossible length");
+  }
+  const std::uint64_t expected = sizeof header + count * sizeof(float);
   if (const auto size = regular_size(*file); !size || *size != expected) {
     return wrong_length(path, expected, size ? std::to_string(*size) : "no fixed size");
   }
@@ -162,18 +168,19 @@ Result<void> store_factor(const std::filesystem::path& folder, const FactorKey& 
   const std::filesystem::path path = factor_path(folder, key);
   if (auto ok = check_key(path, key); !ok) return ok;
   if (factor.order != key.order || factor.metric != key.metric ||
-      std::bit_cast<std::uint64_t>(factor.rho) != std::bit_cast<std::uint64_t>(key.rho) ||
-      factor.inverse.size() != packed_size(key.order)) {
+      std::bit_cast<std::uint64_t>(factor.rho) != std::bit_cast<std::uint64_t>(key.rho) || factor.inverse.empty() ||
+      factor.inverse.size() > most_values(key.order)) {
     return hal::fail(ErrorCode::mismatch, path.string(),
                      "was given a factor of order " + std::to_string(factor.order) + " with " +
-                         std::to_string(factor.inverse.size()) + " values, expected order " +
-                         std::to_string(key.order) + " and the rho and metric of its key");
+                         std::to_string(factor.inverse.size()) + " values, expected 1 to " +
+                         std::to_string(most_values(key.order)) + " of order " + std::to_string(key.order) +
+                         " and the rho and metric of its key");
   }
   std::error_code ec;
   std::filesystem::create_directories(folder, ec);
   if (ec) return tl::unexpected(file_error(ec.value(), folder, "cannot be made to store a factor in"));
   const auto payload = std::as_bytes(std::span(factor.inverse));
-  const Header header = header_for(key, XXH3_64bits(payload.data(), payload.size()));
+  const Header header = header_for(key, factor.inverse.size(), XXH3_64bits(payload.data(), payload.size()));
   auto file = AtomicFile::create(path);
   if (!file) return tl::unexpected(std::move(file.error()));
   return file->write(std::as_bytes(std::span(&header, 1))).and_then([&] { return file->write(payload); }).and_then([&] {

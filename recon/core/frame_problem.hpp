@@ -4,10 +4,10 @@
 #include <cstdint>
 
 #include "recon/core/basis.hpp"
+#include "recon/core/class_inverse.hpp"
 #include "recon/core/frame_info.hpp"
 #include "recon/core/linear_operator.hpp"
 #include "recon/core/metric.hpp"
-#include "recon/core/packed_symmetric.hpp"
 
 namespace compueye::recon::core {
 
@@ -26,7 +26,7 @@ struct SingularModes {
 template <class T>
 struct FrameProblem {
   LinearOperator<T> a;                   ///< seeing rows only
-  PackedSymmetric<T> inverse;            ///< (A K0^-1 A' + rho I)^-1, order = a.rows
+  ClassInverse<T> inverse;               ///< (A K0^-1 A' + rho I)^-1, order = a.rows
   const std::int32_t* seeing = nullptr;  ///< a.rows channel numbers, ascending
   std::size_t channels = 0;              ///< M: length of y and of the weights
   std::size_t max_reweighted = 0;        ///< how many weights may differ from one in a frame

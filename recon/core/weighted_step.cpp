@@ -15,7 +15,8 @@ WeightedStep<T>::WeightedStep(const FrameProblem<T>& problem, Workspace& workspa
       index_(workspace.take<std::size_t>(problem.max_reweighted)),
       inverse_rows_(workspace.take<T>(problem.max_reweighted * problem.a.rows)),
       substitution_(workspace.take<double>(problem.max_reweighted * problem.max_reweighted)),
-      unknown_(workspace.take<double>(problem.max_reweighted)) {
+      unknown_(workspace.take<double>(problem.max_reweighted)),
+      inverse_scratch_(workspace.take<T>(problem.inverse.scratch_size())) {
   if (problem.metric.is_identity()) return;
   smooth_ = workspace.take<T>(problem.pixels());
   coefficients_ = workspace.take<T>(problem.pixels());
@@ -37,7 +38,7 @@ bool WeightedStep<T>::factor_substitution() noexcept {
   const std::size_t n = reweighted_;
   for (std::size_t s = 0; s < n; ++s) {
     T* row = inverse_rows_ + s * problem_->a.rows;
-    expand_row(problem_->inverse, index_[s], row);
+    expand_row(problem_->inverse, index_[s], row, inverse_scratch_);
     for (std::size_t t = 0; t <= s; ++t) substitution_[s * n + t] = static_cast<double>(row[index_[t]]);
     const double weight = static_cast<double>(samples_.weights()[index_[s]]);
     substitution_[s * n + s] += weight / (static_cast<double>(problem_->rho) * (1.0 - weight));
@@ -61,7 +62,7 @@ void WeightedStep<T>::apply(T* v, const T* shift) noexcept {
   for (std::size_t i = 0; shift != nullptr && i < rows; ++i) residual_[i] -= shift[i];
   if (reweighted_ > 0) substitute();
   flush_tiny(residual_, rows);
-  multiply(problem_->inverse, residual_, correction_);
+  multiply(problem_->inverse, residual_, correction_, inverse_scratch_);
   for (std::size_t s = 0; s < reweighted_; ++s) {
     if (samples_.weights()[index_[s]] == T(0)) correction_[index_[s]] = T(0);
   }

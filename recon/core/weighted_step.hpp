@@ -51,7 +51,8 @@ class WeightedStep {
   T* inverse_rows_;       // H_S, |S| x rows
   double* substitution_;  // Cholesky factor of H_SS + D
   double* unknown_;       // c
-  T* smooth_ = nullptr;   // K0^-1 A' s, when K0 is not the identity
+  T* inverse_scratch_;
+  T* smooth_ = nullptr;  // K0^-1 A' s, when K0 is not the identity
   T* coefficients_ = nullptr;
   T* scratch_ = nullptr;
   std::size_t reweighted_ = 0;

@@ -52,6 +52,14 @@ TEST_CASE("a factor comes back bit for bit under its key only") {
   }
 }
 
+TEST_CASE("a factor of parity classes is shorter than its order tells, and comes back as it was") {
+  const TemporaryFolder folder;
+  recon::Factor factor = some_factor(50, 0.125);
+  factor.inverse.resize(350);
+  REQUIRE(store_factor(folder.path(), key, factor).has_value());
+  CHECK(load_factor(folder.path(), key).value().inverse == factor.inverse);
+}
+
 TEST_CASE("a factor of another format version is stale") {
   const TemporaryFolder folder;
   REQUIRE(store_factor(folder.path(), key, some_factor(50, 0.125)).has_value());
@@ -96,7 +104,9 @@ TEST_CASE("a factor that is not the key's is not stored") {
   CHECK(store_factor(folder.path(), key, some_factor(49, 0.125)).error().code == ErrorCode::mismatch);
   CHECK(store_factor(folder.path(), key, some_factor(50, 0.25)).error().code == ErrorCode::mismatch);
   recon::Factor torn = some_factor(50, 0.125);
-  torn.inverse.pop_back();
+  torn.inverse.push_back(1.0F);
+  CHECK(store_factor(folder.path(), key, torn).error().code == ErrorCode::mismatch);
+  torn.inverse.clear();
   CHECK(store_factor(folder.path(), key, torn).error().code == ErrorCode::mismatch);
   for (const int order : {0, -5, 46341, 2147483647}) {
     CHECK(store_factor(folder.path(), {1, 1.0, order}, {1.0, order, {}}).error().code == ErrorCode::usage);

@@ -8,6 +8,8 @@
 #include "recon/core/cholesky.hpp"
 #include "recon/core/packed_symmetric.hpp"
 #include "recon/mirror_symmetry.hpp"
+#include "recon/parity_classes.hpp"
+#include "recon/problem_tables.hpp"
 #include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/random_problem.hpp"
 
@@ -44,15 +46,27 @@ void check_against_direct(const recon::Response& a, int rows, int cols, double r
   const auto packed = recon::packed_inverse<double>(a, rows, cols, recon::MetricKind::identity, rho, {});
   REQUIRE(packed.has_value());
   const Eigen::MatrixXd expected = direct_inverse(a, rho);
-  const recon::core::PackedSymmetric<double> h{static_cast<std::size_t>(a.rows()), packed->data()};
-  double worst = 0.0;
-  for (int i = 0; i < a.rows(); ++i) {
-    for (int j = 0; j < a.rows(); ++j) {
-      const double value = h.at(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-      worst = std::max(worst, std::abs(value - expected(i, j)));
+  const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a, rows, cols));
+  CHECK(packed->size() == recon::factor_size(classes));
+  recon::OwnedTables<double> tables;
+  recon::fill_inverse(classes, *packed, tables);
+  const recon::core::ClassInverse<double>& h = tables.problem.inverse;
+  const auto order = static_cast<std::size_t>(a.rows());
+  std::vector<double> scratch(h.scratch_size()), row(order), y(order);
+  Random random(45);
+  const std::vector<double> x = random_vector(random, a.rows());
+  recon::core::multiply(h, x.data(), y.data(), scratch.data());
+  const double largest = expected.cwiseAbs().maxCoeff();
+  for (std::size_t i = 0; i < order; ++i) {
+    recon::core::expand_row(h, i, row.data(), scratch.data());
+    double product = 0.0;
+    for (std::size_t j = 0; j < order; ++j) {
+      const double entry = expected(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      CHECK(std::abs(row[j] - entry) <= 1e-9 * largest);
+      product += entry * x[j];
     }
+    CHECK(std::abs(y[i] - product) <= 1e-9 * largest * static_cast<double>(order));
   }
-  CHECK(worst <= 1e-9 * expected.cwiseAbs().maxCoeff());
 }
 
 }  // namespace

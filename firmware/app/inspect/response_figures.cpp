@@ -14,6 +14,7 @@
 #include "recon/lambda_rule.hpp"
 #include "recon/mirror_symmetry.hpp"
 #include "recon/option_names.hpp"
+#include "recon/parity_classes.hpp"
 #include "recon/penalty_rule.hpp"
 #include "recon/reconstructor.hpp"
 
@@ -78,8 +79,11 @@ void add_symmetry(const Response& a, PictureSize size, FigureList& figures) {
 /// Exact, from a reconstructor that is handed an empty factor instead of computing one.
 Result<void> add_memory(const Response& a, PictureSize size, FigureList& figures) {
   const std::size_t seeing = a.seeing_rows().size();
-  const std::size_t packed = seeing * (seeing + 1) / 2;
-  if (seeing == 0 || packed * sizeof(float) > most_factor_bytes) return {};
+  if (seeing == 0) return {};
+  const recon::ParityClasses classes(static_cast<int>(seeing),
+                                     recon::find_mirror_symmetry(a.select_rows(a.seeing_rows()), size.rows, size.cols));
+  const std::size_t packed = recon::factor_size(classes);
+  if (packed * sizeof(float) > most_factor_bytes) return {};
   const recon::Objective objective;
   recon::Plan plan;
   recon::Factor factor{recon::resolve_rho(a, size.rows, size.cols, objective, plan), static_cast<int>(seeing),
