@@ -213,17 +213,16 @@ Result<Panel> error_panel(const hal::Image& picture, const hal::Image& truth) {
   return panel;
 }
 
-Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const Panel> panels, int min_panel_pixels,
-                                       int panels_a_row) {
+Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const Panel> panels, int min_panel_pixels) {
   if (panels.empty()) return hal::fail(ErrorCode::usage, "contact sheet", "was given no panels, expected at least one");
   const int least = std::clamp(min_panel_pixels, 1, most_panel_pixels);
-  const std::size_t columns = panels_a_row > 0 ? static_cast<std::size_t>(panels_a_row) : panels.size();
   std::vector<SheetRow> rows;
   std::int64_t width = 0;
   const int title_height = title.empty() ? 0 : line_height + 10;
   std::int64_t height = margin + title_height + margin / 2 - gap;
-  for (std::size_t first = 0; first < panels.size(); first += columns) {
-    auto row = measure_row(panels.subspan(first, std::min(columns, panels.size() - first)), least);
+  for (std::size_t first = 0, end = 0; first < panels.size(); first = end) {
+    for (end = first + 1; end < panels.size() && !panels[end].begins_row;) ++end;
+    auto row = measure_row(panels.subspan(first, end - first), least);
     if (!row) return tl::unexpected(std::move(row.error()));
     width = std::max(width, row->width);
     height += row->height() + gap;
@@ -249,8 +248,8 @@ Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const
 }
 
 Result<void> write_contact_sheet(const std::filesystem::path& path, const std::string& title,
-                                 std::span<const Panel> panels, int min_panel_pixels, int panels_a_row) {
-  auto sheet = compose_contact_sheet(title, panels, min_panel_pixels, panels_a_row);
+                                 std::span<const Panel> panels, int min_panel_pixels) {
+  auto sheet = compose_contact_sheet(title, panels, min_panel_pixels);
   if (!sheet) {
     sheet.error().place = path.string();
     return tl::unexpected(std::move(sheet.error()));

@@ -23,7 +23,8 @@ struct Panel {
   std::vector<std::string> figures;  ///< one line each: "NMSE 0.113", "PSNR 21.4 dB"; long lines are wrapped
   hal::Image image;
   PanelKind kind = PanelKind::grey;
-  double scale = 0.0;  ///< signed_error: the value at the ends of the colours; 0 = by error_scale()
+  double scale = 0.0;       ///< signed_error: the value at the ends of the colours; 0 = by error_scale()
+  bool begins_row = false;  ///< of the sheet, below the panels before
 };
 
 /// A scale that shows an error picture well: the magnitude that 99 % of its pixels stay below, rounded up to 1, 2 or 5
@@ -33,15 +34,14 @@ struct Panel {
 /// The panel "error" with picture minus truth. Error mismatch: different sizes.
 [[nodiscard]] hal::Result<Panel> error_panel(const hal::Image& picture, const hal::Image& truth);
 
-/// Puts panels side by side under a title, `panels_a_row` of them (0: all), and further rows below: every picture
-/// enlarged by a whole number until its longer side has at least `min_panel_pixels`, its caption below. Text is ASCII.
-/// Errors: usage (no panels, an empty picture, a sheet too large for a PNG).
+/// Puts panels side by side under a title, those from one that begins a row on below: every picture enlarged by a
+/// whole number until its longer side has at least `min_panel_pixels`, its caption below. Text is ASCII. Errors: usage
+/// (no panels, an empty picture, a sheet too large for a PNG).
 [[nodiscard]] hal::Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const Panel> panels,
-                                                          int min_panel_pixels = 320, int panels_a_row = 0);
+                                                          int min_panel_pixels = 320);
 
 /// compose_contact_sheet() into a PNG, atomically.
 [[nodiscard]] hal::Result<void> write_contact_sheet(const std::filesystem::path& path, const std::string& title,
-                                                    std::span<const Panel> panels, int min_panel_pixels = 320,
-                                                    int panels_a_row = 0);
+                                                    std::span<const Panel> panels, int min_panel_pixels = 320);
 
 }  // namespace compueye::firmware

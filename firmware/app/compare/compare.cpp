@@ -59,8 +59,9 @@ Result<void> compare(const CompareOptions& options) {
   if (comparison->rows.empty() && comparison->planned > 0) {
     return hal::fail(hal::ErrorCode::interrupted, board->name, "stopped before the first solver was done");
   }
-  return write_files(options, *comparison).and_then([&] {
-    return print_text(options.json ? json_text(compare_json(*comparison)) : compare_text(*comparison));
+  // Printed first: a file that cannot be written must not cost the figures.
+  return print_text(options.json ? json_text(compare_json(*comparison)) : compare_text(*comparison)).and_then([&] {
+    return write_files(options, *comparison);
   });
 }
 

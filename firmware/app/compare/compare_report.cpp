@@ -16,12 +16,6 @@ std::string_view name_of(recon::Health health) {
   return health == recon::Health::converged ? "converged" : "budget used";
 }
 
-const ComparedRow* best_of(const Comparison& c) {
-  const auto less = [](const ComparedRow& a, const ComparedRow& b) { return a.quality.nmse < b.quality.nmse; };
-  const auto best = std::min_element(c.rows.begin(), c.rows.end(), less);
-  return best == c.rows.end() ? nullptr : &*best;
-}
-
 std::string excess_text(const ComparedRow& row) {
   if (!row.excess) return "-";
   return *row.excess == 0.0 ? "least" : fmt::format("+{:.1e}", *row.excess);
@@ -53,24 +47,27 @@ std::string head_text(const Comparison& c) {
   std::string text = fmt::format("{} in front of {}: {} of {} ommatidia see its {} x {} pixels\n", c.board, c.scene,
                                  grouped(c.seeing), grouped(c.channels), c.truth.rows, c.truth.cols);
   text += c.exact ? "y = A x + n with the very A that is inverted" : "y through the simulated eye";
-  return text + fmt::format("; noise of a sample {} white pixels\n\n", significant(c.sigma, 4));
+  return text + fmt::format("; noise of a sample {} white pixels; seed {}, scene seed {}\n\n", significant(c.sigma, 4),
+                            c.seed, c.scene_seed);
 }
 
 std::string foot_text(const Comparison& c) {
   std::string text =
-      "\n* least NMSE. Solvers of one basis and constraint minimise the same objective: 'over least' and the duality\n"
-      "gap say how far each has come, NMSE, PSNR and SSIM how good the picture is. omp, tikhonov and tsvd have\n"
-      "objectives of their own. ms: median of one frame on one thread, duality gap included.\n";
+      "\n* least NMSE. Solvers of one basis and constraint minimise the same objective: 'over least' says how far each "
+      "is\n"
+      "above the least among them, the duality gap how far at most above the optimum (that of admm and adm closes\n"
+      "late), NMSE, PSNR and SSIM how good the picture is. omp, tikhonov and tsvd have objectives of their own.\n"
+      "ms: median of one frame on one thread, duality gap included.\n";
   const bool pixels = std::any_of(c.rows.begin(), c.rows.end(), [](const ComparedRow& row) {
     return row.contender.basis == recon::BasisKind::identity && row.excess;
   });
-  if (pixels && c.seeing > 1000) {
+  if (pixels && c.seeing > 1000 && c.seeing < c.truth.rows * c.truth.cols) {
     text +=
         "l1 in pixels is semi-convergent on so large an eye: NMSE falls, then rises while the objective goes on\n"
         "falling, so a lower NMSE there may only mean fewer iterations.\n";
   }
   if (c.rows.size() < c.planned) {
-    text += fmt::format("Stopped: {} of {} done.\n", c.rows.size(), c.planned);
+    text += fmt::format("{} of {} done; missing: {}.\n", c.rows.size(), c.planned, fmt::join(c.missing, ", "));
   }
   for (const std::string& note : c.notes) text += "note: " + note + "\n";
   return text;
@@ -95,6 +92,27 @@ Json row_json(const ComparedRow& row) {
           {"setup_s", row.setup_s},
           {"workspace_bytes", row.workspace_bytes},
           {"table_bytes", row.table_bytes}};
+}
+
+/// A scene may be a file name with a comma in it.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char character : text) out += character == '"' ? std::string("\"\"") : std::string(1, character);
+  return out + '"';
+}
+
+/// The conventional eye as a line with the columns of `like`.
+template <class Line>
+std::string conventional_line(const Comparison& c, const Json& like, Line&& line) {
+  if (!c.conventional_quality) return {};
+  Json row;
+  for (const auto& [key, value] : like.items()) row[key] = Json();
+  row["solver"] = "conventional eye";
+  row["nmse"] = c.conventional_quality->nmse;
+  row["psnr_db"] = c.conventional_quality->psnr_db;
+  row["ssim"] = c.conventional_quality->ssim;
+  return line(row, false);
 }
 
 }  // namespace
@@ -127,6 +145,8 @@ Json compare_json(const Comparison& c) {
             {"scene", c.scene},
             {"samples", c.exact ? "exact" : "simulated eye"},
             {"sigma", c.sigma},
+            {"seed", c.seed},
+            {"scene_seed", c.scene_seed},
             {"channels", c.channels},
             {"seeing_channels", c.seeing},
             {"rows", c.truth.rows},
@@ -141,22 +161,27 @@ Json compare_json(const Comparison& c) {
   }
   json["compared"] = Json::array();
   for (const ComparedRow& row : c.rows) json["compared"].push_back(row_json(row));
+  json["missing"] = c.missing;
   json["notes"] = c.notes;
   return json;
 }
 
 std::string compare_csv(const Comparison& c) {
+  const auto line = [&](const Json& row, bool keys) {
+    std::string text = keys ? "board,scene,scene_seed,seed,samples"
+                            : fmt::format("{},{},{},{},{}", quoted(c.board), quoted(c.scene), c.scene_seed, c.seed,
+                                          c.exact ? "exact" : "simulated eye");
+    for (const auto& [key, value] : row.items()) {
+      const std::string cell = value.is_string() ? value.get<std::string>() : value.dump();
+      text += ',' + (keys ? key : (value.is_null() ? std::string() : cell));
+    }
+    return text + "\r\n";
+  };
   std::string text;
   for (const ComparedRow& row : c.rows) {
     const Json json = row_json(row);
-    std::string head, line;
-    for (const auto& [key, value] : json.items()) {
-      head += (head.empty() ? "" : ",") + key;
-      line += (head.size() == key.size() ? "" : ",");
-      line += value.is_null() ? "" : (value.is_string() ? value.get<std::string>() : value.dump());
-    }
-    if (text.empty()) text = head + "\r\n";
-    text += line + "\r\n";
+    if (text.empty()) text = line(json, true) + conventional_line(c, json, line);
+    text += line(json, false);
   }
   return text;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <span>
 #include <utility>
 
 #include "calib/nominal.hpp"
@@ -33,7 +34,7 @@ Result<recon::Response> response_of(const Board& board, const CompareOptions& o,
         fmt::format("has {} rows and {} columns, expected {} and {}, the ommatidia and pixels of {}", response->rows(),
                     response->cols(), board.eye.ommatidia(), board.object.pixels(), board.name));
   }
-  return board.sensor.dead.empty() ? std::move(*response) : without_dead(*response, board.sensor.dead);
+  return response;
 }
 
 /// y = A x + n on the truth's own pixels.
@@ -48,12 +49,12 @@ void take_exact(std::uint64_t seed, CompareSamples& samples) {
   samples.weights.assign(samples.y.size(), 1.0F);
 }
 
-Result<void> take_from_eye(const Board& board, const sim::Scene& scene, std::uint64_t seed, CompareSamples& samples) {
+/// `sees` as in CorrectionSettings: by the geometry, dead ommatidia included.
+Result<void> take_from_eye(const Board& board, const sim::Scene& scene, std::uint64_t seed,
+                           std::span<const std::uint8_t> sees, CompareSamples& samples) {
   hal::VirtualClock clock;
   auto eye = sim::SimulatedEye::create(simulated_eye_settings(board, scene, seed), clock);
   if (!eye) return tl::unexpected(std::move(eye.error()));
-  std::vector<std::uint8_t> sees(static_cast<std::size_t>(board.eye.ommatidia()), 0);
-  for (const std::int32_t m : samples.response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
   const std::atomic<bool> never{false};
   auto frame = take_trial_frame(board, correction_settings(board, sees), **eye, clock, never);
   if (!frame) return tl::unexpected(std::move(frame.error()));
@@ -72,12 +73,15 @@ Result<CompareSamples> take_compare_samples(const Board& board, const CompareOpt
   if (!truth) return tl::unexpected(std::move(truth.error()));
   auto response = response_of(board, o, progress);
   if (!response) return tl::unexpected(std::move(response.error()));
+  std::vector<std::uint8_t> sees(static_cast<std::size_t>(board.eye.ommatidia()), 0);
+  for (const std::int32_t m : response->seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
+  if (!board.sensor.dead.empty()) response = without_dead(*response, board.sensor.dead);
   CompareSamples samples{
       scene->name, std::move(*truth), std::move(*response), o.sigma.value_or(board.noise_sigma()), {}, {}, {}};
   const auto seed = static_cast<std::uint64_t>(o.seed);
   if (o.exact) {
     take_exact(seed, samples);
-  } else if (auto taken = take_from_eye(board, *scene, seed, samples); !taken) {
+  } else if (auto taken = take_from_eye(board, *scene, seed, sees, samples); !taken) {
     return tl::unexpected(std::move(taken.error()));
   }
   // A lattice without an interommatidial angle has no conventional eye; the comparison goes on without it.

@@ -13,7 +13,6 @@
 namespace compueye::firmware {
 namespace {
 
-constexpr int panels_a_row = 6;
 constexpr int panel_pixels = 240;
 
 std::vector<std::string> figures_of(const PictureQuality& q) {
@@ -21,9 +20,9 @@ std::vector<std::string> figures_of(const PictureQuality& q) {
           fmt::format("{} dB, SSIM {}", fixed(q.psnr_db, 1), fixed(q.ssim, 2))};
 }
 
-Panel panel_of(const ComparedRow& row) {
+Panel panel_of(const ComparedRow& row, bool best) {
   const Contender& c = row.contender;
-  std::string title = fmt::format("{} {}", name(c.basis), name(c.solver));
+  std::string title = fmt::format("{}{} {}", best ? "* " : "", name(c.basis), name(c.solver));
   if (c.constraint != recon::ConstraintKind::none) title += fmt::format(" {}", name(c.constraint));
   Panel panel{std::move(title), figures_of(row.quality), row.picture};
   panel.figures.push_back(fmt::format("K {}, {} ms", row.info.iterations, significant(row.solve_ms, 3)));
@@ -38,10 +37,16 @@ hal::Result<void> write_compare_sheet(const std::filesystem::path& path, const C
   if (c.conventional && c.conventional_quality) {
     panels.push_back({"conventional eye", figures_of(*c.conventional_quality), *c.conventional});
   }
-  for (const ComparedRow& row : c.rows) panels.push_back(panel_of(row));
+  const ComparedRow* best = best_of(c);
+  const ComparedRow* before = nullptr;
+  for (const ComparedRow& row : c.rows) {
+    panels.push_back(panel_of(row, &row == best));
+    panels.back().begins_row = before == nullptr || before->contender.basis != row.contender.basis;
+    before = &row;
+  }
   const std::string title = fmt::format("{}: {}, {}, noise {}", c.board, c.scene,
                                         c.exact ? "y = A x + n" : "through the simulated eye", significant(c.sigma, 3));
-  return write_contact_sheet(path, title, panels, panel_pixels, panels_a_row);
+  return write_contact_sheet(path, title, panels, panel_pixels);
 }
 
 }  // namespace compueye::firmware

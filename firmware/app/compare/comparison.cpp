@@ -66,6 +66,11 @@ class Runner {
       plan.iterations = std::min(more_without_factor * plan.iterations, 1'000'000);
     if (options_.iterations) plan.iterations = static_cast<int>(*options_.iterations);
     plan.relaxation = board_.reconstruction.relaxation;
+    // The board's rho was chosen for the board's metric.
+    const bool penalised = recon::uses_factor(contender.solver) && contender.solver != recon::SolverKind::tikhonov;
+    if (penalised && recon::metric_of(contender.basis) == recon::metric_of(board_.reconstruction.basis)) {
+      plan.rho = board_.reconstruction.rho.value_or(0.0);
+    }
     plan.max_reweighted = static_cast<int>(
         std::count_if(samples_.weights.begin(), samples_.weights.end(), [](float w) { return w != 1.0F; }));
     plan.max_reweighted = std::min(plan.max_reweighted, seeing_);
@@ -73,16 +78,21 @@ class Runner {
     return plan;
   }
 
+  /// By hand, else the board's for the board's own basis, else by rule.
+  Result<double> lambda_of(const Contender& contender) const {
+    if (options_.lambda) return *options_.lambda;
+    const bool boards = contender.basis == board_.reconstruction.basis && shares_objective(contender.solver);
+    if (boards && board_.reconstruction.lambda && !options_.sigma) return *board_.reconstruction.lambda;
+    return recon::lambda_by_rule(samples_.response, board_.object.rows, board_.object.cols, contender.solver,
+                                 contender.basis, samples_.sigma);
+  }
+
   Result<recon::Reconstructor> set_up(const Contender& contender, ComparedRow& row) {
-    recon::Objective objective{contender.basis, contender.constraint, board_.reconstruction.box_lo,
-                               board_.reconstruction.box_hi, options_.lambda.value_or(0.0)};
-    if (!options_.lambda) {
-      const auto lambda = recon::lambda_by_rule(samples_.response, board_.object.rows, board_.object.cols,
-                                                contender.solver, contender.basis, samples_.sigma);
-      if (!lambda) return tl::unexpected(lambda.error());
-      objective.lambda = *lambda;
-    }
-    row.lambda = objective.lambda;
+    const auto lambda = lambda_of(contender);
+    if (!lambda) return tl::unexpected(lambda.error());
+    const recon::Objective objective{contender.basis, contender.constraint, board_.reconstruction.box_lo,
+                                     board_.reconstruction.box_hi, *lambda};
+    row.lambda = *lambda;
     const recon::Plan plan = plan_of(contender);
     const int rows = board_.object.rows, cols = board_.object.cols;
     if (!recon::uses_factor(contender.solver)) {
@@ -90,15 +100,17 @@ class Runner {
     }
     const recon::MetricKind metric = recon::metric_of(contender.basis);
     const double rho = recon::resolve_rho(samples_.response, rows, cols, objective, plan);
-    if (factor_ && factor_->metric == metric && factor_->rho == rho) {
-      return recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, factor_, progress_);
+    for (const recon::Factor& factor : factors_) {
+      if (factor.metric != metric || factor.rho != rho) continue;
+      return recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, factor, progress_);
     }
     KeptFactor kept(board_.folder / ".cache", {hash_, rho, seeing_, metric});
     auto made = recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, kept.take(), progress_);
     if (!made) return made;
     if (kept.origin() != FactorOrigin::kept) kept.keep(made->factor());
     notes_.insert(notes_.end(), kept.notes().begin(), kept.notes().end());
-    factor_ = made->factor();
+    // tikhonov's goes with its lambda, which nobody shares.
+    if (contender.solver != recon::SolverKind::tikhonov) factors_.push_back(made->factor());
     return made;
   }
 
@@ -135,7 +147,7 @@ class Runner {
   const recon::Progress& progress_;
   std::uint64_t hash_;
   int seeing_;
-  std::optional<recon::Factor> factor_;
+  std::vector<recon::Factor> factors_;
   std::vector<std::string> notes_;
 };
 
@@ -147,6 +159,10 @@ bool takes_too_long(const Contender& contender, const CompareOptions& options, c
   if (static_cast<int>(rows.size()) <= most_for_whole_spectrum) return false;
   const auto images = recon::find_mirror_symmetry(response.select_rows(rows), board.object.rows, board.object.cols);
   return rows.size() / images.order() > most_for_whole_spectrum;
+}
+
+std::string title_of(const Contender& c) {
+  return fmt::format("{} {} {}", name(c.basis), name(c.constraint), name(c.solver));
 }
 
 void fill_excess(std::vector<ComparedRow>& rows) {
@@ -172,6 +188,11 @@ Result<Comparison> compare_all(const Board& board, const CompareOptions& options
   comparison.scene = samples.scene;
   comparison.exact = options.exact;
   comparison.sigma = samples.sigma;
+  comparison.seed = options.seed;
+  comparison.scene_seed = options.scene_seed;
+  if (!samples.conventional) {
+    comparison.notes.emplace_back("the conventional eye is left out: this lattice has no interommatidial angle");
+  }
   comparison.channels = samples.response.rows();
   comparison.seeing = static_cast<int>(samples.response.seeing_rows().size());
   if (samples.conventional) {
@@ -179,8 +200,13 @@ Result<Comparison> compare_all(const Board& board, const CompareOptions& options
     if (!quality) return tl::unexpected(quality.error());
     comparison.conventional_quality = *quality;
   }
-  Runner runner(board, options, samples, clock, progress);
   double done = 0.0;
+  // One stage from the first solver to the last, so that its remaining time means something.
+  const recon::Progress overall = [&](std::string_view, double, double) {
+    return progress("comparing", done, static_cast<double>(contenders.size()));
+  };
+  Runner runner(board, options, samples, clock, overall);
+  std::optional<hal::Error> first_failure;
   for (const Contender& contender : contenders) {
     if (takes_too_long(contender, options, board, samples.response)) {
       comparison.notes.emplace_back(
@@ -189,18 +215,33 @@ Result<Comparison> compare_all(const Board& board, const CompareOptions& options
       continue;
     }
     ++comparison.planned;
-    const bool goes_on = progress("comparing", done++, static_cast<double>(contenders.size()));
-    if (!goes_on) continue;
+    if (!overall("comparing", 0.0, 0.0)) {
+      comparison.missing.push_back(title_of(contender));
+      continue;
+    }
     auto row = runner.run(contender);
-    if (!row && row.error().code == hal::ErrorCode::interrupted) continue;
-    if (!row) return tl::unexpected(std::move(row.error()));
-    comparison.rows.push_back(std::move(*row));
+    done += 1.0;
+    if (row) {
+      comparison.rows.push_back(std::move(*row));
+      continue;
+    }
+    comparison.missing.push_back(title_of(contender));
+    if (row.error().code == hal::ErrorCode::interrupted) continue;
+    comparison.notes.push_back(title_of(contender) + " is left out: " + row.error().text());
+    if (!first_failure) first_failure = std::move(row.error());
   }
+  if (comparison.rows.empty() && first_failure) return tl::unexpected(std::move(*first_failure));
   fill_excess(comparison.rows);
   comparison.notes.insert(comparison.notes.end(), runner.notes().begin(), runner.notes().end());
   comparison.truth = std::move(samples.truth);
   comparison.conventional = std::move(samples.conventional);
   return comparison;
+}
+
+const ComparedRow* best_of(const Comparison& comparison) {
+  const auto less = [](const ComparedRow& a, const ComparedRow& b) { return a.quality.nmse < b.quality.nmse; };
+  const auto best = std::min_element(comparison.rows.begin(), comparison.rows.end(), less);
+  return best == comparison.rows.end() ? nullptr : &*best;
 }
 
 }  // namespace compueye::firmware

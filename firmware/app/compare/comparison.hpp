@@ -34,21 +34,26 @@ struct Comparison {
   std::string scene;
   bool exact = false;
   double sigma = 0.0;
+  std::int64_t seed = 0;
+  std::int64_t scene_seed = 0;
   int channels = 0;
   int seeing = 0;
   hal::Image truth;
   std::optional<hal::Image> conventional;
   std::optional<PictureQuality> conventional_quality;
   std::vector<ComparedRow> rows;
-  std::size_t planned = 0;         ///< rows that there would be without a stop
-  std::vector<std::string> notes;  ///< sentences for the user
+  std::size_t planned = 0;           ///< rows that there would be without a stop or a failure
+  std::vector<std::string> missing;  ///< "basis constraint solver" of each that was planned and is not there
+  std::vector<std::string> notes;    ///< sentences for the user
 };
 
-/// Solves the frame in every way. A stop (`progress` returning false) keeps the rows that are done.
-/// Errors: those of lambda_by_rule(), Reconstructor::create() and the metrics; out_of_range for a frame that leaves the
-/// range of float32.
+/// Solves the frame in every way. A stop (`progress` returning false) keeps the rows that are done; a contender that
+/// cannot be set up or solved becomes a note. Errors: when there is no row at all, that of the first contender.
 [[nodiscard]] hal::Result<Comparison> compare_all(const Board& board, const CompareOptions& options,
                                                   const std::vector<Contender>& contenders, CompareSamples samples,
                                                   const hal::Clock& clock, const recon::Progress& progress);
+
+/// The row with the least NMSE; null when there is none.
+[[nodiscard]] const ComparedRow* best_of(const Comparison& comparison);
 
 }  // namespace compueye::firmware

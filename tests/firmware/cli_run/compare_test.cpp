@@ -118,6 +118,41 @@ TEST_CASE("factors are made once a metric and kept for the next time") {
   }
 }
 
+TEST_CASE("what cannot be solved is a note, and costs no other row") {
+  const CopiedBoard board;
+  const Json json = compare_json(board, {"--lambda", "0", "--bases", "identity", "--iterations", "20"});
+  CHECK(row_of(json, "admm", "identity")["lambda"] == 0.0);
+  CHECK(row_of(json, "tikhonov", "identity").is_null());
+  CHECK(json["complete"] == false);
+  CHECK(json["missing"].size() == 2);
+  REQUIRE(json["notes"].size() == 2);
+  CHECK(contains(json["notes"][0].get<std::string>(), "identity none tikhonov"));
+  const Ended alone = compueye::test::compueye(compare_arguments(board, {"--lambda", "0", "--solvers", "tikhonov"}));
+  CHECK(alone.exit_code == 2);
+  CHECK(contains(alone.err, "tikhonov"));
+}
+
+TEST_CASE("a board's own rho, lambda and dead ommatidia count as in a run") {
+  const CopiedBoard slow;
+  slow.change("iterations = 200", "iterations = 20\nrho = 500");
+  const Json by_board = compare_json(slow, {"--solvers", "admm", "--bases", "identity"});
+  const CopiedBoard plain;
+  const Json by_rule = compare_json(plain, {"--solvers", "admm", "--bases", "identity", "--iterations", "20"});
+  CHECK(row_of(by_board, "admm", "identity")["nmse"].get<double>() >
+        10.0 * row_of(by_rule, "admm", "identity")["nmse"].get<double>());
+  const CopiedBoard stated;
+  stated.change("iterations = 200", "iterations = 20\nlambda = 0.25");
+  const Json both = compare_json(stated, {"--solvers", "admm", "--bases", "identity,dct"});
+  CHECK(row_of(both, "admm", "identity")["lambda"] == 0.25);
+  CHECK(row_of(both, "admm", "dct")["lambda"] != 0.25);
+  const CopiedBoard blind;
+  blind.change("dead = []", "dead = [10, 11, 12, 18, 19, 20]");
+  const Ended refused =
+      compueye::test::compueye(compare_arguments(blind, {"--solvers", "admm", "--bases", "identity"}));
+  CHECK(refused.exit_code != 0);
+  CHECK(contains(refused.err, "max_missing_share"));
+}
+
 TEST_CASE("another response, a table, a CSV and a contact sheet") {
   const CopiedBoard board;
   const auto matrix = board.outside("A.npy"), sheet = board.outside("all.png"), csv = board.outside("all.csv");
@@ -132,13 +167,14 @@ TEST_CASE("another response, a table, a CSV and a contact sheet") {
   CHECK(contains(ended.out, " *"));
   CHECK(contains(ended.out, "y = A x + n"));
   const std::string text = bytes_of(csv);
-  CHECK(lines(text) == 1 + 12);
-  CHECK(text.rfind("basis,constraint,solver,lambda,rank,nmse,", 0) == 0);
+  CHECK(lines(text) == 1 + 1 + 12);
+  CHECK(text.rfind("board,scene,scene_seed,seed,samples,basis,constraint,solver,lambda,rank,nmse,", 0) == 0);
+  CHECK(contains(text, "conventional eye"));
   const auto picture = firmware::read_png(sheet);
   REQUIRE(picture.has_value());
-  CHECK(picture->rows > 3 * 240);  // scene, conventional eye and twelve pictures, six a row
-  CHECK(picture->cols > 6 * 240);
-  CHECK(picture->cols < 7 * 270);
+  CHECK(picture->rows > 3 * 240);  // scene and conventional eye, seven ways in pixels, five in the DCT
+  CHECK(picture->cols > 7 * 240);
+  CHECK(picture->cols < 8 * 270);
 }
 
 TEST_CASE("compare refuses what makes no sense before it works") {
