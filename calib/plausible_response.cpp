@@ -160,14 +160,15 @@ hal::Result<recon::Response> plausible_response(const hal::EyeGeometry& eye, con
                                                 const BuildErrors& errors, std::uint64_t seed,
                                                 const Progress& progress) {
   if (auto ok = check(errors); !ok) return tl::unexpected(ok.error());
-  const auto nominal = nominal_response(eye, plane, progress);
+  auto nominal = nominal_response(eye, plane, progress);
   if (!nominal) return nominal;
   const auto row_start = nominal->row_start();
   try {
     Builder builder(eye, plane, errors, seed);
     for (int i = 0; i < eye.rows; ++i) {
       for (int k = 0; k < eye.columns; ++k) {
-        const auto m = static_cast<std::size_t>(i * eye.columns + k);
+        const auto m =
+            static_cast<std::size_t>(i) * static_cast<std::size_t>(eye.columns) + static_cast<std::size_t>(k);
         builder.add_row(i, k, row_start[m] == row_start[m + 1]);
       }
       if (progress && !progress("build errors", i + 1.0, eye.rows)) {

@@ -18,13 +18,15 @@ constexpr double kept_variance = 26.0 / 35.0;
 SmoothField::SmoothField(const PixelBox& box, double finest_pitch_px, RowDraws& draws) : box_(box) {
   const int rows = box.last_row - box.first_row + 1, cols = box.last_col - box.first_col + 1;
   const double coarsest = std::max(finest_pitch_px, std::max(rows, cols) / 2.0);
-  for (double pitch = finest_pitch_px; pitch <= coarsest; pitch *= 2.0) {
+  double pitch = finest_pitch_px;
+  while (pitch <= coarsest) {
     // Offsets at random make every pixel as likely to lie on a knot as between them.
     const double down = draws.uniform(), across = draws.uniform();
     const auto knots_down = static_cast<std::size_t>((rows - 1) / pitch + down) + 2;
     const auto knots_across = static_cast<std::size_t>((cols - 1) / pitch + across) + 2;
     octaves_.push_back({pitch, down, across, knots_.size(), knots_across});
     for (std::size_t k = 0; k < knots_down * knots_across; ++k) knots_.push_back(draws.normal());
+    pitch *= 2.0;
   }
   scale_ = 1.0 / (kept_variance * std::sqrt(static_cast<double>(octaves_.size())));
 }

@@ -108,7 +108,7 @@ class RiskSearch {
   }
 
   /// A x of the picture that the samples give.
-  Result<std::vector<double>> samples_of(const Reconstructor& solver, std::span<const float> y) const {
+  [[nodiscard]] Result<std::vector<double>> samples_of(const Reconstructor& solver, std::span<const float> y) const {
     const FrameMemory memory(solver.required_bytes());
     std::vector<float> picture(static_cast<std::size_t>(response_.cols()));
     if (solver.solve(y, {}, memory.span(), picture).health == Health::invalid) {

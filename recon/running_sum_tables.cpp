@@ -46,7 +46,7 @@ class FoldedRow {
     const int row = (lane & 2U) != 0 ? rows_ / 2 + r : rows_ / 2 - 1 - r;
     const int col = (lane & 1U) != 0 ? cols_ / 2 + c : cols_ / 2 - 1 - c;
     if (row < 0 || row >= rows_ || col < 0 || col >= cols_) return 0.0;
-    return picture_[static_cast<std::size_t>(row * cols_ + col)];
+    return picture_[static_cast<std::size_t>(row) * static_cast<std::size_t>(cols_) + static_cast<std::size_t>(col)];
   }
 
   const Response& response_;
