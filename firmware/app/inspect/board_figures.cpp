@@ -97,7 +97,7 @@ Result<double> add_rules(const Board& board, const recon::Response& a, FigureLis
   const ReconstructionSettings& r = board.reconstruction;
   const auto by_rule =
       recon::lambda_by_rule(a, board.object.rows, board.object.cols, r.solver, r.basis, board.noise_sigma());
-  if (!by_rule) return by_rule;
+  if (!by_rule) return tl::unexpected(by_rule.error());
   const double lambda = r.lambda.value_or(*by_rule);
   recon::Plan plan;
   plan.solver = r.solver;

@@ -96,8 +96,8 @@ Result<void> inspect(const InspectOptions& o) {
       },
       figures);
   reporter.finish();
-  if (const auto stopped = watch.check(); !stopped) return stopped;
-  if (!done) return done;
+  if (auto stopped = watch.check(); !stopped) return stopped;
+  if (!done) return tl::unexpected(done.error());
   return print_text(o.json ? json_text(figures.json()) : figures.text());
 }
 

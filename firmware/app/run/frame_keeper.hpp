@@ -20,7 +20,7 @@ class FrameKeeper final : public FrameObserver {
   /// Room for `expected` pictures (0: unknown) within `most_bytes`, and for two at least.
   FrameKeeper(hal::FrameFormat format, std::uint64_t expected, std::size_t most_bytes = std::size_t{64} << 20U);
 
-  void published(const PublishedFrame& frame) noexcept override;
+  void published(const PublishedFrame& published) noexcept override;
 
   /// Pictures kept, in order.
   [[nodiscard]] std::size_t kept() const noexcept { return kept_; }

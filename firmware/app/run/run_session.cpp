@@ -61,7 +61,7 @@ class RunSession {
   Result<void> measure_quality();
   Result<void> write_sheet();
   Result<void> print();
-  Result<void> verdict() const;
+  [[nodiscard]] Result<void> verdict() const;
   void note(const std::string& sentence);
   void fill_figures();
   [[nodiscard]] PipelineSettings pipeline_settings() const;
