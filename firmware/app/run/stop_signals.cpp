@@ -34,6 +34,8 @@ StopSignals::StopSignals() {
 }
 
 StopSignals::~StopSignals() {
+  // Whoever asked once may ask again while the program is on its way out, and must not spoil its exit code.
+  if (stop_requested.load(std::memory_order_relaxed)) return;
   for (std::size_t i = 0; i < signals.size(); ++i) sigaction(signals[i], &before[i], nullptr);
 }
 

@@ -12,7 +12,7 @@ class StopSignals {
   StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
-  /// Gives the signals back to what handled them before.
+  /// Gives the signals back to what handled them before, unless a stop was asked for: the program is then ending.
   ~StopSignals();
 
   [[nodiscard]] const std::atomic<bool>& requested() const noexcept;
