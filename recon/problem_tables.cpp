@@ -84,8 +84,7 @@ void fill_numbers(const Objective& objective, const Plan& plan, core::FrameProbl
   problem.point.basis = objective.basis;
   problem.point.solver = plan.solver;
   problem.point.precision = plan.precision;
-  const bool direct = plan.solver == SolverKind::tikhonov || plan.solver == SolverKind::tsvd;
-  problem.point.iterations = direct ? 1 : plan.iterations;
+  fill_iterations(plan, problem);
   problem.point.op = problem.a.kind;
 }
 
@@ -174,6 +173,12 @@ void fill_choice(const Response& seeing, const Objective& objective, const Plan&
 }
 
 template <class T>
+void fill_iterations(const Plan& plan, core::FrameProblem<T>& problem) {
+  const bool direct = plan.solver == SolverKind::tikhonov || plan.solver == SolverKind::tsvd;
+  problem.point.iterations = direct ? 1 : plan.iterations;
+}
+
+template <class T>
 void fill_inverse(const ParityClasses& classes, const std::vector<T>& values, OwnedTables<T>& tables) {
   core::ClassInverse<T>& inverse = tables.problem.inverse;
   inverse.order = static_cast<std::size_t>(classes.rows());
@@ -209,6 +214,8 @@ hal::Result<void> fill_modes(const Response& seeing, const Objective& objective,
   return {};
 }
 
+template void fill_iterations(const Plan&, core::FrameProblem<float>&);
+template void fill_iterations(const Plan&, core::FrameProblem<double>&);
 template void fill_inverse(const ParityClasses&, const std::vector<float>&, OwnedTables<float>&);
 template void fill_inverse(const ParityClasses&, const std::vector<double>&, OwnedTables<double>&);
 template hal::Result<void> fill_modes(const Response&, const Objective&, const Plan&, const Progress&,

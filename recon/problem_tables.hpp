@@ -54,6 +54,10 @@ void fill_basis(BasisKind kind, int image_rows, int image_cols, OwnedTables<T>& 
 template <class T>
 void fill_choice(const Response& seeing, const Objective& objective, const Plan& plan, OwnedTables<T>& tables);
 
+/// The plan's iterations: one where the solver is direct.
+template <class T>
+void fill_iterations(const Plan& plan, core::FrameProblem<T>& problem);
+
 /// Points problem.inverse at `values`, which are packed as Factor::inverse is.
 template <class T>
 void fill_inverse(const ParityClasses& classes, const std::vector<T>& values, OwnedTables<T>& tables);

@@ -220,6 +220,15 @@ OperatingPoint Reconstructor::operating_point() const noexcept {
   return std::visit([](const auto& tables) { return tables.problem.point; }, tables_->by_precision);
 }
 
+hal::Result<void> Reconstructor::set_iterations(int iterations) {
+  Plan changed = tables_->plan;
+  changed.iterations = iterations;
+  return check_choice(tables_->objective, changed).map([&] {
+    tables_->plan = changed;
+    std::visit([&](auto& tables) { fill_iterations(changed, tables.problem); }, tables_->by_precision);
+  });
+}
+
 std::size_t Reconstructor::required_bytes() const noexcept {
   return std::visit([](const auto& tables) { return bytes_for(tables.problem); }, tables_->by_precision);
 }

@@ -78,6 +78,10 @@ class Reconstructor {
   [[nodiscard]] const Plan& plan() const noexcept;  ///< with every rule resolved (rho, rank, max_reweighted)
   [[nodiscard]] OperatingPoint operating_point() const noexcept;
 
+  /// Another number of iterations a frame, not while a solve() runs. Changes nothing of a direct solver's frames.
+  /// Error: out_of_range.
+  [[nodiscard]] hal::Result<void> set_iterations(int iterations);
+
   /// Exact size of the workspace that solve() wants, for 64-byte aligned memory.
   [[nodiscard]] std::size_t required_bytes() const noexcept;
   /// Bytes of the tables behind it: operator, basis and factor.

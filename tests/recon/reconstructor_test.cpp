@@ -64,6 +64,23 @@ TEST_CASE("set-up refuses what makes no sense, and says what it expected") {
   CHECK(Reconstructor::create(blind, 2, 2, {}, {}).error().sentence.find("sees nothing") != std::string::npos);
 }
 
+TEST_CASE("another number of iterations gives the frames of a solver made with it") {
+  const recon::Response a = some_response();
+  recon::Plan plan;
+  plan.iterations = 7;
+  auto changed = Reconstructor::create(a, 6, 8, dct_box(0.1), plan).value();
+  plan.iterations = 31;
+  const auto made = Reconstructor::create(a, 6, 8, dct_box(0.1), plan).value();
+  const std::vector<float> y(20, 1.0F);
+  CHECK(solve_frame(changed, y).x != solve_frame(made, y).x);
+  REQUIRE(changed.set_iterations(31));
+  CHECK(changed.plan().iterations == 31);
+  CHECK(changed.operating_point().iterations == 31);
+  CHECK(solve_frame(changed, y).x == solve_frame(made, y).x);
+  CHECK(changed.set_iterations(0).error().code == ErrorCode::out_of_range);
+  CHECK(changed.plan().iterations == 31);
+}
+
 TEST_CASE("a stored factor is used when it fits and refused when stale") {
   const recon::Response a = some_response();
   const auto first = Reconstructor::create(a, 6, 8, dct_box(0.1), {}).value();

@@ -62,8 +62,7 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const EyeRequest& reque
   ReadyEye eye;
   auto response = living_response(board, eye.sees_, progress);
   if (!response) return tl::unexpected(std::move(response.error()));
-  eye.response_ = std::move(*response);
-  const recon::Response& a = *eye.response_;
+  const recon::Response& a = **response;
   if (progress && !progress("lambda by rule", 0.0, 0.0)) {
     return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");
   }
@@ -86,18 +85,6 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const EyeRequest& reque
   eye.factor_origin_ = factor.origin();
   eye.notes_ = factor.notes();
   return eye;
-}
-
-hal::Result<void> ReadyEye::set_iterations(int iterations) {
-  recon::Plan plan = reconstructor_->plan();
-  if (plan.iterations == iterations) return {};
-  plan.iterations = iterations;
-  auto made = recon::Reconstructor::create(
-      *response_, reconstructor_->image_rows(), reconstructor_->image_cols(), reconstructor_->objective(), plan,
-      recon::uses_factor(plan.solver) ? std::optional(reconstructor_->factor()) : std::nullopt);
-  if (!made) return tl::unexpected(std::move(made.error()));
-  *reconstructor_ = std::move(*made);
-  return {};
 }
 
 }  // namespace compueye::firmware

@@ -45,15 +45,12 @@ class ReadyEye {
   [[nodiscard]] FactorOrigin factor_origin() const noexcept { return factor_origin_; }
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
-  /// Another number of iterations with the same factor. Not after forget_response().
-  [[nodiscard]] hal::Result<void> set_iterations(int iterations);
-  /// Gives back the memory that only set_iterations() needs: more than the frames themselves take.
-  void forget_response() noexcept { response_.reset(); }
+  /// Another number of iterations a frame.
+  [[nodiscard]] hal::Result<void> set_iterations(int iterations) { return reconstructor_->set_iterations(iterations); }
 
  private:
   ReadyEye() = default;
 
-  std::unique_ptr<recon::Response> response_;  // dead rows zero
   std::unique_ptr<recon::Reconstructor> reconstructor_;
   std::vector<std::uint8_t> sees_;
   LambdaChoice lambda_;

@@ -152,7 +152,6 @@ Result<void> RunSession::fit() {
     report_.deadline = *choice;
     note(choice->sentence());
   }
-  eye_->forget_response();
   if (!signals_.requested().load(std::memory_order_relaxed)) return {};
   return hal::fail(ErrorCode::interrupted, board_.name, "stopped before the first frame");
 }
