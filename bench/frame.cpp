@@ -102,11 +102,11 @@ Part measure_inverse(const recon::Response& seeing, const bench::Eye& eye, const
   recon::OwnedTables<float> tables;
   recon::fill_inverse(
       recon::ParityClasses(seeing.rows(), recon::find_mirror_symmetry(seeing, eye.plane.rows, eye.plane.cols)),
-      factor.inverse, tables);
+      factor.values, tables);
   const core::ClassInverse<float>& h = tables.problem.inverse;
   const auto x = some_numbers(h.order);
   std::vector<float> y(h.order), scratch(h.scratch_size());
-  const auto entries = static_cast<double>(factor.inverse.size());
+  const auto entries = static_cast<double>(factor.values.size());
   const auto shares = static_cast<double>(tables.class_share.size());
   return {"inverse product", bench::median_ms([&] { core::multiply(h, x.data(), y.data(), scratch.data()); }),
           4.0 * (entries + 2.0 * static_cast<double>(h.order)) + 2.0 * 8.0 * shares, 4.0 * (entries + shares)};

@@ -24,17 +24,24 @@ enum class MetricKind : std::uint8_t { identity, smoothing };
 
 /// Whether a solver works with a cached factor at all.
 [[nodiscard]] constexpr bool uses_factor(SolverKind solver) noexcept {
-  return solver == SolverKind::admm || solver == SolverKind::adm || solver == SolverKind::tikhonov;
+  return solver == SolverKind::admm || solver == SolverKind::adm || solver == SolverKind::tikhonov ||
+         solver == SolverKind::pdhg;
 }
 
-/// The inverse that makes a frame cheap: (A K0^-1 A' + rho I)^-1 of the seeing rows, made in double, kept in float32: a
-/// packed upper triangle by rows for each parity class, one after the other. Worth storing: it is the slow part of
-/// setting up a solver.
+/// The metric of the factor that a solver keeps: modes are always those of A A'.
+[[nodiscard]] constexpr MetricKind metric_of(SolverKind solver, BasisKind basis) noexcept {
+  return solver == SolverKind::pdhg ? MetricKind::identity : metric_of(basis);
+}
+
+/// What makes a frame cheap, made in double, kept in float32, and worth storing: it is the slow part of setting up a
+/// solver. Either the inverse (A K0^-1 A' + rho I)^-1 of the seeing rows, a packed upper triangle by rows for each
+/// parity class, one after the other; or, for pdhg, the leading modes of A A' (recon/leading_modes.hpp).
 struct Factor {
-  double rho = 0.0;
-  int order = 0;               ///< number of seeing rows
-  std::vector<float> inverse;  ///< factor_size() of its classes
+  double rho = 0.0;           ///< of an inverse; modes serve every rho
+  int order = 0;              ///< number of seeing rows
+  std::vector<float> values;  ///< factor_size() or modes_size() of its classes
   MetricKind metric = MetricKind::identity;
+  int rank = 0;  ///< how many modes, 0: it is an inverse
 };
 
 class ParityClasses;

@@ -5,12 +5,13 @@
 namespace compueye::recon {
 namespace {
 
-constexpr std::array<Named<SolverKind>, 7> solvers{{
+constexpr std::array<Named<SolverKind>, 8> solvers{{
     {"admm", SolverKind::admm},
     {"adm", SolverKind::adm},
     {"cp", SolverKind::chambolle_pock},
     {"fista", SolverKind::fista},
     {"omp", SolverKind::omp},
+    {"pdhg", SolverKind::pdhg},
     {"tikhonov", SolverKind::tikhonov},
     {"tsvd", SolverKind::tsvd},
 }};

@@ -7,11 +7,14 @@
 #include <numeric>
 #include <vector>
 
+#include "recon/deflation_rule.hpp"
+
 namespace compueye::recon {
 namespace {
 
 constexpr double share_of_column_norm = 0.06;
 constexpr double share_for_differences = 0.1;
+constexpr double share_with_few_modes = 0.03;
 
 double squared_norm(const Response& response) {
   const auto values = response.values();
@@ -47,7 +50,11 @@ double resolve_rho(const Response& response, int image_rows, int image_cols, con
   if (plan.rho > 0.0) return plan.rho;
   const double squares = squared_norm(response);
   const double by_columns = share_of_column_norm * squares / response.cols();
-  if (metric_of(objective.basis) == MetricKind::identity) return by_columns;
+  const auto order = static_cast<int>(response.seeing_rows().size());
+  if (plan.solver == SolverKind::pdhg && resolve_rank(plan, order) < order) {
+    return share_with_few_modes * squares / response.cols();
+  }
+  if (metric_of(plan.solver, objective.basis) == MetricKind::identity) return by_columns;
   const double differences = squared_difference_norm(response, image_rows, image_cols);
   // Fields that cover the picture evenly have no edge at all.
   const double by_edges = share_for_differences * std::sqrt(squares) * std::sqrt(std::max(differences, 0.0));

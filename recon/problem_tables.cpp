@@ -10,6 +10,7 @@
 
 #include "recon/atom_norms.hpp"
 #include "recon/dct_tables.hpp"
+#include "recon/deflation_rule.hpp"
 #include "recon/fourier_tables.hpp"
 #include "recon/mirror_symmetry.hpp"
 #include "recon/parity_classes.hpp"
@@ -163,6 +164,9 @@ void fill_choice(const Response& seeing, const Objective& objective, const Plan&
     problem.atom_norms = tables.atom_norms.data();
   }
   if (plan.solver == SolverKind::fista) problem.lipschitz = static_cast<T>(squared_norm_bound(seeing));
+  if (plan.solver == SolverKind::pdhg) {
+    problem.basis_step = static_cast<T>(basis_share(objective.basis) * plan.rho / problem.psi.squared_norm());
+  }
   if (plan.solver != SolverKind::chambolle_pock) return;
   const PrimalDualSteps steps = primal_dual_steps(seeing, problem.psi.squared_norm());
   tables.primal_steps.assign(steps.primal.begin(), steps.primal.end());

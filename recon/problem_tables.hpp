@@ -6,6 +6,7 @@
 
 #include "hal/result.hpp"
 #include "recon/core/frame_problem.hpp"
+#include "recon/dual_step_tables.hpp"
 #include "recon/reconstructor.hpp"
 #include "recon/running_sum_tables.hpp"
 
@@ -18,6 +19,7 @@ struct OwnedTables {
   std::vector<std::uint32_t> row_start;
   std::vector<std::int32_t> columns;
   RunningSumTables<T> sums;
+  DualStepTables<T> dual_step;
   std::vector<T> row_table;  // of the basis, or of the metric's DCT
   std::vector<T> col_table;
   std::vector<T> metric;
@@ -35,7 +37,8 @@ struct OwnedTables {
     return (values.size() + row_table.size() + col_table.size() + metric.size() + inverse.size() + primal_steps.size() +
             dual_steps.size() + atom_norms.size() + modes.size() + mode_weights.size() + class_share.size()) *
                sizeof(T) +
-           (row_start.size() + columns.size() + class_index.size()) * sizeof(std::uint32_t) + sums.bytes();
+           (row_start.size() + columns.size() + class_index.size()) * sizeof(std::uint32_t) + sums.bytes() +
+           dual_step.bytes();
   }
 };
 

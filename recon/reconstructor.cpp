@@ -15,9 +15,13 @@
 #include "recon/core/chambolle_pock.hpp"
 #include "recon/core/fista.hpp"
 #include "recon/core/omp.hpp"
+#include "recon/core/pdhg.hpp"
 #include "recon/core/tikhonov.hpp"
 #include "recon/core/tsvd.hpp"
 #include "recon/core/workspace.hpp"
+#include "recon/deflation_rule.hpp"
+#include "recon/dual_step_tables.hpp"
+#include "recon/leading_modes.hpp"
 #include "recon/mirror_symmetry.hpp"
 #include "recon/number_text.hpp"
 #include "recon/parity_classes.hpp"
@@ -51,6 +55,8 @@ FrameInfo solve_with(const core::FrameProblem<T>& problem, const float* y, const
       return core::solve_omp(problem, y, weights, workspace, x);
     case SolverKind::tsvd:
       return core::solve_tsvd(problem, y, weights, workspace, x);
+    case SolverKind::pdhg:
+      return core::solve_pdhg(problem, y, weights, workspace, x);
   }
   return {};
 }
@@ -74,6 +80,8 @@ std::size_t bytes_for(const core::FrameProblem<T>& problem) noexcept {
       return core::omp_bytes(problem);
     case SolverKind::tsvd:
       return core::tsvd_bytes(problem);
+    case SolverKind::pdhg:
+      return core::pdhg_bytes(problem);
   }
   return 0;
 }
@@ -87,7 +95,7 @@ struct Reconstructor::Tables {
   Objective objective;
   Plan plan;
   std::vector<std::int32_t> seeing;
-  Factor factor;  // f32 only; its inverse is the one in use
+  Factor factor;  // of f32 the inverse in use; modes are only kept to be stored
   std::variant<OwnedTables<float>, OwnedTables<double>> by_precision;
 
   template <class T>
@@ -107,20 +115,37 @@ struct Reconstructor::Tables {
         plan.rank = static_cast<int>(tables.problem.modes.rank);
       });
     }
-    return uses_factor(plan.solver) ? fill_factor(sees, tables, std::move(stored), progress) : hal::Result<void>{};
+    if (!uses_factor(plan.solver)) return {};
+    return plan.solver == SolverKind::pdhg ? fill_dual_step(sees, tables, std::move(stored), progress)
+                                           : fill_factor(sees, tables, std::move(stored), progress);
+  }
+
+  template <class T>
+  hal::Result<void> fill_dual_step(const Response& sees, OwnedTables<T>& tables, std::optional<Factor> stored,
+                                   const Progress& progress) {
+    const ParityClasses classes(sees.rows(), find_mirror_symmetry(sees, image_rows, image_cols));
+    if (stored && stored->values.size() != modes_size(classes, plan.rank)) return stale(*stored);
+    if (stored) {
+      factor.values = std::move(stored->values);
+    } else {
+      auto made = leading_modes(sees, image_rows, image_cols, plan.rank, progress);
+      if (!made) return tl::unexpected(made.error());
+      factor.values = std::move(*made);
+    }
+    tables.dual_step =
+        dual_step_tables<T>(classes, factor.values, plan.rank, 1.0 / plan.rho, basis_share(objective.basis));
+    tables.problem.dual_step = tables.dual_step.view;
+    return {};
   }
 
   template <class T>
   hal::Result<void> fill_factor(const Response& sees, OwnedTables<T>& tables, std::optional<Factor> stored,
                                 const Progress& progress) {
-    factor.metric = metric_of(objective.basis);
-    factor.rho = plan.rho;
-    factor.order = static_cast<int>(seeing.size());
     std::vector<T>& inverse = inverse_of(tables);
     const ParityClasses classes(sees.rows(), find_mirror_symmetry(sees, image_rows, image_cols));
-    if (stored && stored->inverse.size() != factor_size(classes)) return stale(*stored);
+    if (stored && stored->values.size() != factor_size(classes)) return stale(*stored);
     if (stored && std::is_same_v<T, float>) {
-      factor.inverse = std::move(stored->inverse);
+      factor.values = std::move(stored->values);
     } else {
       auto made = packed_inverse<T>(sees, image_rows, image_cols, factor.metric, plan.rho, progress);
       if (!made) return tl::unexpected(made.error());
@@ -130,12 +155,12 @@ struct Reconstructor::Tables {
     return {};
   }
 
-  std::vector<float>& inverse_of(OwnedTables<float>&) noexcept { return factor.inverse; }
+  std::vector<float>& inverse_of(OwnedTables<float>&) noexcept { return factor.values; }
   static std::vector<double>& inverse_of(OwnedTables<double>& tables) noexcept { return tables.inverse; }
 
   [[nodiscard]] hal::Result<void> check_stored(const Factor& stored) const {
-    const bool fits = uses_factor(plan.solver) && stored.metric == metric_of(objective.basis) &&
-                      stored.rho == plan.rho && stored.order == static_cast<int>(seeing.size());
+    const bool fits = uses_factor(plan.solver) && stored.metric == factor.metric && stored.rho == factor.rho &&
+                      stored.order == factor.order && stored.rank == factor.rank;
     return fits ? hal::Result<void>{} : stale(stored);
   }
 
@@ -178,6 +203,8 @@ hal::Result<Reconstructor> Reconstructor::create(const Response& response, int i
   const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
   if (auto ok = check_scale(squares, response.cols()); !ok) return tl::unexpected(ok.error());
   tables->plan.rho = resolve_rho(response, image_rows, image_cols, objective, plan);
+  tables->factor = wanted_factor(response, image_rows, image_cols, objective, plan);
+  if (plan.solver == SolverKind::pdhg) tables->plan.rank = tables->factor.rank;
   if (auto ok = check_in_precision(squares, objective, tables->plan); !ok) return tl::unexpected(ok.error());
   const int most = static_cast<int>(tables->seeing.size());
   const int by_rule = (most + 9) / 10;
@@ -189,6 +216,14 @@ hal::Result<Reconstructor> Reconstructor::create(const Response& response, int i
                                                  : tables->fill<double>(response, std::move(factor), progress);
   if (!filled) return tl::unexpected(filled.error());
   return Reconstructor(std::move(tables));
+}
+
+Factor Reconstructor::wanted_factor(const Response& response, int image_rows, int image_cols,
+                                    const Objective& objective, const Plan& plan) {
+  const auto order = static_cast<int>(response.seeing_rows().size());
+  const MetricKind metric = metric_of(plan.solver, objective.basis);
+  if (plan.solver == SolverKind::pdhg) return {0.0, order, {}, metric, resolve_rank(plan, order)};
+  return {resolve_rho(response, image_rows, image_cols, objective, plan), order, {}, metric, 0};
 }
 
 int Reconstructor::channels() const noexcept {
@@ -235,7 +270,7 @@ std::size_t Reconstructor::required_bytes() const noexcept {
 
 std::size_t Reconstructor::table_bytes() const noexcept {
   const std::size_t owned = std::visit([](const auto& tables) { return tables.bytes(); }, tables_->by_precision);
-  return owned + tables_->factor.inverse.size() * sizeof(float) + tables_->seeing.size() * sizeof(std::int32_t);
+  return owned + tables_->factor.values.size() * sizeof(float) + tables_->seeing.size() * sizeof(std::int32_t);
 }
 
 FrameInfo Reconstructor::solve(std::span<const float> y, std::span<const float> weights, std::span<std::byte> workspace,

@@ -94,7 +94,11 @@ class Reconstructor {
   [[nodiscard]] FrameInfo solve(std::span<const float> y, std::span<const float> weights,
                                 std::span<std::byte> workspace, std::span<float> x) const noexcept;
 
-  /// The factor, to be stored; empty inverse where the plan needs none.
+  /// What the factor of such a plan is, without its values: what a stored one has to be to be used.
+  [[nodiscard]] static Factor wanted_factor(const Response& response, int image_rows, int image_cols,
+                                            const Objective& objective, const Plan& plan);
+
+  /// The factor, to be stored; without values where the plan needs none.
   [[nodiscard]] const Factor& factor() const noexcept;
 
  private:

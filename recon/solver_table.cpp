@@ -10,6 +10,7 @@ bool supports(SolverKind solver, BasisKind basis, ConstraintKind constraint) noe
   switch (solver) {
     case SolverKind::admm:
     case SolverKind::chambolle_pock:
+    case SolverKind::pdhg:
       return true;
     case SolverKind::fista:
     case SolverKind::adm:

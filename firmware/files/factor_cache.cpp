@@ -31,7 +31,8 @@ struct Header {
   std::int32_t order;
   std::uint64_t response_hash;
   std::uint64_t rho_bits;
-  std::uint64_t metric;
+  std::uint32_t metric;
+  std::int32_t rank;
   std::uint64_t values;  // of the payload; not part of the key
   std::uint64_t payload_checksum;
   std::uint64_t header_checksum;  // of everything above
@@ -49,17 +50,19 @@ Header header_for(const FactorKey& key, std::uint64_t values, std::uint64_t payl
   header.order = key.order;
   header.response_hash = key.response_hash;
   header.rho_bits = std::bit_cast<std::uint64_t>(key.rho);
-  header.metric = static_cast<std::uint64_t>(key.metric);
+  header.metric = static_cast<std::uint32_t>(key.metric);
+  header.rank = key.rank;
   header.values = values;
   header.payload_checksum = payload_checksum;
   header.header_checksum = checksum_of(header);
   return header;
 }
 
-/// Of the whole matrix; a symmetric eye's classes take a quarter.
-std::size_t most_values(int order) {
-  const auto n = static_cast<std::size_t>(order);
-  return n * (n + 1) / 2;
+/// Of the whole matrix, or of as many vectors; a symmetric eye's classes take a quarter.
+std::size_t most_values(const FactorKey& key) {
+  constexpr std::size_t classes = 4;
+  const auto n = static_cast<std::size_t>(key.order), modes = static_cast<std::size_t>(key.rank) + classes;
+  return key.rank == 0 ? n * (n + 1) / 2 : (n + 1) * modes + classes;
 }
 
 Result<void> check_key(const std::filesystem::path& path, const FactorKey& key) {
@@ -84,9 +87,9 @@ Result<void> check_header(const std::filesystem::path& path, const Header& heade
   }
   if (header.order != key.order || header.response_hash != key.response_hash ||
       header.rho_bits != std::bit_cast<std::uint64_t>(key.rho) ||
-      header.metric != static_cast<std::uint64_t>(key.metric)) {
+      header.metric != static_cast<std::uint32_t>(key.metric) || header.rank != key.rank) {
     return hal::fail(ErrorCode::stale, path.string(),
-                     "was made from another response, rho, order or metric; expected order " +
+                     "was made from another response, rho, order, metric or rank; expected order " +
                          std::to_string(key.order) + " and found " + std::to_string(header.order));
   }
   return {};
@@ -144,19 +147,19 @@ Result<recon::Factor> load_factor(const std::filesystem::path& folder, const Fac
   Header header{};
   auto got = read_some(*file, path, std::as_writable_bytes(std::span(&header, 1)));
   if (!got) return tl::unexpected(std::move(got.error()));
-  recon::Factor factor{key.rho, key.order, {}, key.metric};
+  recon::Factor factor{key.rho, key.order, {}, key.metric, key.rank};
   if (*got != sizeof header) return wrong_length(path, sizeof header, "only " + std::to_string(*got));
   if (auto ok = check_header(path, header, key); !ok) return tl::unexpected(std::move(ok.error()));
   const auto count = static_cast<std::size_t>(header.values);
-  if (count == 0 || count > most_values(key.order)) {
+  if (count == 0 || count > most_values(key)) {
     return hal::fail(ErrorCode::bad_format, path.string(), "is damaged: its header tells an impossible length");
   }
   const std::uint64_t expected = sizeof header + count * sizeof(float);
   if (const auto size = regular_size(*file); !size || *size != expected) {
     return wrong_length(path, expected, size ? std::to_string(*size) : "no fixed size");
   }
-  factor.inverse.resize(count);
-  const auto checksum = read_payload(*file, path, factor.inverse);
+  factor.values.resize(count);
+  const auto checksum = read_payload(*file, path, factor.values);
   if (!checksum) return tl::unexpected(checksum.error());
   if (*checksum != header.payload_checksum) {
     return hal::fail(ErrorCode::bad_format, path.string(), "is damaged: the checksum of its values is wrong");
@@ -167,20 +170,20 @@ Result<recon::Factor> load_factor(const std::filesystem::path& folder, const Fac
 Result<void> store_factor(const std::filesystem::path& folder, const FactorKey& key, const recon::Factor& factor) {
   const std::filesystem::path path = factor_path(folder, key);
   if (auto ok = check_key(path, key); !ok) return ok;
-  if (factor.order != key.order || factor.metric != key.metric ||
-      std::bit_cast<std::uint64_t>(factor.rho) != std::bit_cast<std::uint64_t>(key.rho) || factor.inverse.empty() ||
-      factor.inverse.size() > most_values(key.order)) {
+  if (factor.order != key.order || factor.metric != key.metric || factor.rank != key.rank ||
+      std::bit_cast<std::uint64_t>(factor.rho) != std::bit_cast<std::uint64_t>(key.rho) || factor.values.empty() ||
+      factor.values.size() > most_values(key)) {
     return hal::fail(ErrorCode::mismatch, path.string(),
                      "was given a factor of order " + std::to_string(factor.order) + " with " +
-                         std::to_string(factor.inverse.size()) + " values, expected 1 to " +
-                         std::to_string(most_values(key.order)) + " of order " + std::to_string(key.order) +
-                         " and the rho and metric of its key");
+                         std::to_string(factor.values.size()) + " values, expected 1 to " +
+                         std::to_string(most_values(key)) + " of order " + std::to_string(key.order) +
+                         " and the rho, metric and rank of its key");
   }
   std::error_code ec;
   std::filesystem::create_directories(folder, ec);
   if (ec) return tl::unexpected(file_error(ec.value(), folder, "cannot be made to store a factor in"));
-  const auto payload = std::as_bytes(std::span(factor.inverse));
-  const Header header = header_for(key, factor.inverse.size(), XXH3_64bits(payload.data(), payload.size()));
+  const auto payload = std::as_bytes(std::span(factor.values));
+  const Header header = header_for(key, factor.values.size(), XXH3_64bits(payload.data(), payload.size()));
   auto file = AtomicFile::create(path);
   if (!file) return tl::unexpected(std::move(file.error()));
   return file->write(std::as_bytes(std::span(&header, 1))).and_then([&] { return file->write(payload); }).and_then([&] {

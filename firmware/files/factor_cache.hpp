@@ -11,9 +11,10 @@ namespace compueye::firmware {
 /// What a stored factor was made from. Any difference makes it another factor.
 struct FactorKey {
   std::uint64_t response_hash = 0;  ///< recon::Response::content_hash()
-  double rho = 0.0;                 ///< ADMM penalty, compared bit by bit
+  double rho = 0.0;                 ///< ADMM penalty, compared bit by bit; 0 of modes
   int order = 0;                    ///< number of seeing rows, 1 to 46340
   recon::MetricKind metric = recon::MetricKind::identity;
+  int rank = 0;  ///< number of modes, 0 for an inverse
 };
 
 /// "<folder>/factor-<16 hex digits of the key's hash>.bin"

@@ -6,7 +6,7 @@ namespace compueye::recon {
 
 enum class OperatorKind : std::uint8_t { dense, csr, running_sums, running_sums_symmetric };
 enum class BasisKind : std::uint8_t { identity, dct, haar, db4, dft, tv };
-enum class SolverKind : std::uint8_t { admm, tikhonov, fista, chambolle_pock, adm, adm_as_published, omp, tsvd };
+enum class SolverKind : std::uint8_t { admm, tikhonov, fista, chambolle_pock, adm, adm_as_published, omp, tsvd, pdhg };
 enum class Precision : std::uint8_t { f32, f64 };
 
 /// One way of turning y into x, with a known cost.
@@ -19,8 +19,9 @@ struct OperatingPoint {
 };
 
 enum class Health : std::uint8_t {
-  converged,    ///< both optimality residuals are below 1e-3 after the last iteration (fista, cp: the duality gap is
-                ///< below 1e-3 of the objective)
+  converged,    ///< both optimality residuals are below 1e-3 after the last iteration (fista, cp, pdhg: the duality
+                ///< gap is below 1e-3 of the objective; where there is none or, in pdhg, it is not measured, the last
+                ///< step was below 1e-6)
   budget_used,  ///< exactly K iterations done, residuals above that: normal in real time
   invalid,      ///< NaN or infinity in y or in the result, a weight outside 0..1, more reweighted channels than planned
                 ///< or buffers of the wrong size: x is all zero, and so are objective and residuals

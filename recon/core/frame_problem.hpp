@@ -5,6 +5,7 @@
 
 #include "recon/core/basis.hpp"
 #include "recon/core/class_inverse.hpp"
+#include "recon/core/deflated_step.hpp"
 #include "recon/core/frame_info.hpp"
 #include "recon/core/linear_operator.hpp"
 #include "recon/core/metric.hpp"
@@ -44,7 +45,8 @@ struct FrameProblem {
   T lipschitz = T(1);               ///< at least ||A||_2^2, for fista
   const T* primal_steps = nullptr;  ///< a.cols of them, for cp (recon/step_sizes.hpp)
   const T* dual_steps = nullptr;    ///< a.rows of them, for cp
-  T basis_step = T(0);              ///< for cp
+  T basis_step = T(0);              ///< for cp and pdhg
+  DeflatedStep<T> dual_step;        ///< for pdhg
   bool bounded = false;             ///< adm: min ||Psi x||_1 subject to ||W^(1/2)(A x - y)|| <= epsilon instead
   T epsilon = T(0);
   T mean_row_sum = T(1);          ///< of the magnitudes of A's entries

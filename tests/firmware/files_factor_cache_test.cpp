@@ -18,7 +18,7 @@ namespace {
 
 recon::Factor some_factor(int order, double rho) {
   recon::Factor factor{rho, order, std::vector<float>(static_cast<std::size_t>(order * (order + 1) / 2))};
-  for (std::size_t i = 0; i < factor.inverse.size(); ++i) factor.inverse[i] = 1.0F / static_cast<float>(i + 3);
+  for (std::size_t i = 0; i < factor.values.size(); ++i) factor.values[i] = 1.0F / static_cast<float>(i + 3);
   return factor;
 }
 
@@ -35,8 +35,8 @@ TEST_CASE("a factor comes back bit for bit under its key only") {
   const auto back = load_factor(cache, key).value();
   CHECK(back.rho == factor.rho);
   CHECK(back.order == factor.order);
-  REQUIRE(back.inverse.size() == factor.inverse.size());
-  CHECK(std::memcmp(back.inverse.data(), factor.inverse.data(), factor.inverse.size() * 4) == 0);
+  REQUIRE(back.values.size() == factor.values.size());
+  CHECK(std::memcmp(back.values.data(), factor.values.data(), factor.values.size() * 4) == 0);
 
   const std::string name = factor_path(cache, key).filename().string();
   CHECK(name.size() == std::string("factor-0123456789abcdef.bin").size());
@@ -55,9 +55,9 @@ TEST_CASE("a factor comes back bit for bit under its key only") {
 TEST_CASE("a factor of parity classes is shorter than its order tells, and comes back as it was") {
   const TemporaryFolder folder;
   recon::Factor factor = some_factor(50, 0.125);
-  factor.inverse.resize(350);
+  factor.values.resize(350);
   REQUIRE(store_factor(folder.path(), key, factor).has_value());
-  CHECK(load_factor(folder.path(), key).value().inverse == factor.inverse);
+  CHECK(load_factor(folder.path(), key).value().values == factor.values);
 }
 
 TEST_CASE("a factor of another format version is stale") {
@@ -104,9 +104,9 @@ TEST_CASE("a factor that is not the key's is not stored") {
   CHECK(store_factor(folder.path(), key, some_factor(49, 0.125)).error().code == ErrorCode::mismatch);
   CHECK(store_factor(folder.path(), key, some_factor(50, 0.25)).error().code == ErrorCode::mismatch);
   recon::Factor torn = some_factor(50, 0.125);
-  torn.inverse.push_back(1.0F);
+  torn.values.push_back(1.0F);
   CHECK(store_factor(folder.path(), key, torn).error().code == ErrorCode::mismatch);
-  torn.inverse.clear();
+  torn.values.clear();
   CHECK(store_factor(folder.path(), key, torn).error().code == ErrorCode::mismatch);
   for (const int order : {0, -5, 46341, 2147483647}) {
     CHECK(store_factor(folder.path(), {1, 1.0, order}, {1.0, order, {}}).error().code == ErrorCode::usage);

@@ -35,12 +35,13 @@ recon::Response golden_response(int rows, int cols, std::uint32_t share) {
 }
 
 std::uint64_t golden_frame(recon::BasisKind basis, recon::ConstraintKind constraint, std::uint32_t share, int rows = 12,
-                           int cols = 20) {
+                           int cols = 20, recon::SolverKind kind = recon::SolverKind::admm) {
   recon::Objective objective;
   objective.basis = basis;
   objective.constraint = constraint;
   objective.lambda = 0.125;
   recon::Plan plan;
+  plan.solver = kind;
   plan.iterations = 40;
   plan.rho = 0.5;
   const auto solver =
@@ -64,4 +65,6 @@ TEST_CASE("golden bits") {
   // Sides whose DCT has rotated levels.
   CHECK(golden_frame(recon::BasisKind::dct, recon::ConstraintKind::box, 60, 24, 40) == 12606849122869241640ULL);
   CHECK(golden_frame(recon::BasisKind::tv, recon::ConstraintKind::nonnegative, 60, 32, 24) == 6703258194279814339ULL);
+  CHECK(golden_frame(recon::BasisKind::dct, recon::ConstraintKind::box, 60, 24, 40, recon::SolverKind::pdhg) ==
+        1755867176864116872ULL);
 }

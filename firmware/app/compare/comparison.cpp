@@ -66,8 +66,8 @@ class Runner {
       plan.iterations = std::min(more_without_factor * plan.iterations, 1'000'000);
     if (options_.iterations) plan.iterations = static_cast<int>(*options_.iterations);
     plan.relaxation = board_.reconstruction.relaxation;
-    // The board's rho was chosen for the board's metric.
-    const bool penalised = recon::uses_factor(contender.solver) && contender.solver != recon::SolverKind::tikhonov;
+    // The board's rho was chosen for the board's metric, and is no step of pdhg.
+    const bool penalised = contender.solver == recon::SolverKind::admm || contender.solver == recon::SolverKind::adm;
     if (penalised && recon::metric_of(contender.basis) == recon::metric_of(board_.reconstruction.basis)) {
       plan.rho = board_.reconstruction.rho.value_or(0.0);
     }
@@ -98,13 +98,12 @@ class Runner {
     if (!recon::uses_factor(contender.solver)) {
       return recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, std::nullopt, progress_);
     }
-    const recon::MetricKind metric = recon::metric_of(contender.basis);
-    const double rho = recon::resolve_rho(samples_.response, rows, cols, objective, plan);
+    const recon::Factor wanted = recon::Reconstructor::wanted_factor(samples_.response, rows, cols, objective, plan);
     for (const recon::Factor& factor : factors_) {
-      if (factor.metric != metric || factor.rho != rho) continue;
+      if (factor.metric != wanted.metric || factor.rho != wanted.rho || factor.rank != wanted.rank) continue;
       return recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, factor, progress_);
     }
-    KeptFactor kept(board_.folder / ".cache", {hash_, rho, seeing_, metric});
+    KeptFactor kept(board_.folder / ".cache", {hash_, wanted.rho, wanted.order, wanted.metric, wanted.rank});
     auto made = recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, kept.take(), progress_);
     if (!made) return made;
     if (kept.origin() != FactorOrigin::kept) kept.keep(made->factor());

@@ -72,11 +72,11 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const EyeRequest& reque
 
   const recon::Objective objective = objective_of(board, lambda->value);
   const recon::Plan plan = plan_of(board, request, std::count(eye.sees_.begin(), eye.sees_.end(), 1));
-  const auto order = static_cast<int>(a.seeing_rows().size());
   const bool cached = recon::uses_factor(plan.solver);
+  const recon::Factor wanted =
+      recon::Reconstructor::wanted_factor(a, board.object.rows, board.object.cols, objective, plan);
   KeptFactor factor(cached ? request.cache : std::filesystem::path{},
-                    {a.content_hash(), recon::resolve_rho(a, board.object.rows, board.object.cols, objective, plan),
-                     order, recon::metric_of(objective.basis)});
+                    {a.content_hash(), wanted.rho, wanted.order, wanted.metric, wanted.rank});
   auto made =
       recon::Reconstructor::create(a, board.object.rows, board.object.cols, objective, plan, factor.take(), progress);
   if (!made) return tl::unexpected(std::move(made.error()));

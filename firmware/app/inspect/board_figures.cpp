@@ -93,7 +93,8 @@ void add_solver(const Board& board, FigureList& figures) {
                {"relaxation", r.relaxation}});
 }
 
-Result<double> add_rules(const Board& board, const recon::Response& a, FigureList& figures) {
+/// Returns what the board's factor has to be.
+Result<recon::Factor> add_rules(const Board& board, const recon::Response& a, FigureList& figures) {
   const ReconstructionSettings& r = board.reconstruction;
   const auto by_rule =
       recon::lambda_by_rule(a, board.object.rows, board.object.cols, r.solver, r.basis, board.noise_sigma());
@@ -102,12 +103,12 @@ Result<double> add_rules(const Board& board, const recon::Response& a, FigureLis
   recon::Plan plan;
   plan.solver = r.solver;
   plan.rho = r.rho.value_or(0.0);
-  const double rho = recon::resolve_rho(a, board.object.rows, board.object.cols,
-                                        {r.basis, r.constraint, r.box_lo, r.box_hi, lambda}, plan);
+  const recon::Objective objective{r.basis, r.constraint, r.box_lo, r.box_hi, lambda};
+  const double rho = recon::resolve_rho(a, board.object.rows, board.object.cols, objective, plan);
   figures.add("lambda_by_rule", "lambda by rule", significant(*by_rule, 5), *by_rule);
   figures.add("lambda", "lambda in use", significant(lambda, 5) + (r.lambda ? " (the board's)" : " (by rule)"), lambda);
   figures.add("rho", "rho in use", significant(rho, 5) + (r.rho ? " (the board's)" : " (by rule)"), rho);
-  return rho;
+  return recon::Reconstructor::wanted_factor(a, board.object.rows, board.object.cols, objective, plan);
 }
 
 std::vector<fs::path> factor_files(const fs::path& folder) {
@@ -163,9 +164,9 @@ Result<void> add_board_figures(const Board& board, const recon::Progress& progre
   figures.add("entries", "response entries", grouped(a.stored_entries()), a.stored_entries());
   if (seeing == 0) return {};
   if (progress) progress("lambda by rule", 0.0, 0.0);
-  const auto rho = add_rules(board, a, figures);
-  if (!rho) return tl::unexpected(rho.error());
-  add_cache(board, {a.content_hash(), *rho, seeing}, figures);
+  const auto wanted = add_rules(board, a, figures);
+  if (!wanted) return tl::unexpected(wanted.error());
+  add_cache(board, {a.content_hash(), wanted->rho, wanted->order, wanted->metric, wanted->rank}, figures);
   return {};
 }
 

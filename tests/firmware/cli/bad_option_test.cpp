@@ -55,7 +55,7 @@ TEST_CASE("option values out of range name the value and what was expected") {
       {"--sigma 1 --box 1,0", {"--box", "'1,0'", "lower first"}},
       {"--sigma 1 --box 1", {"--box", "'1'", "such as 0,1"}},
       {"--sigma 1 --box 0,1 --nonnegative", {"excludes"}},
-      {"--sigma 1 --solver pdhg", {"--solver", "'pdhg'", "later", "admm, adm, cp, fista, omp, tikhonov, tsvd"}},
+      {"--sigma 1 --solver yall1", {"--solver", "'yall1'", "admm, adm, cp, fista, omp, pdhg, tikhonov, tsvd"}},
       {"--sigma 1 --solver adm --basis dct --nonnegative", {"--solver", "adm", "dct", "nonnegative", "admm, cp"}},
       {"--sigma 1 --solver adm --basis tv", {"--solver", "adm", "tv", "admm, cp"}},
       {"--sigma 1 --solver omp --box 0,1", {"--solver", "omp", "box", "admm, adm, cp, fista"}},

@@ -167,7 +167,7 @@ TEST_CASE("another response, a table, a CSV and a contact sheet") {
   CHECK(contains(ended.out, " *"));
   CHECK(contains(ended.out, "y = A x + n"));
   const std::string text = bytes_of(csv);
-  CHECK(lines(text) == 1 + 1 + 12);
+  CHECK(lines(text) == 1 + 1 + 14);
   CHECK(text.rfind("board,scene,scene_seed,seed,samples,basis,constraint,solver,lambda,rank,nmse,", 0) == 0);
   CHECK(contains(text, "conventional eye"));
   const auto picture = firmware::read_png(sheet);

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/eyes.hpp"
+#include "recon/reconstructor.hpp"
+#include "recon/response.hpp"
+
+namespace compueye::bench {
+
+/// What is reconstructed: one kind of scene, seen by one eye under one noise, with lambda by rule from the noise alone.
+struct Scenes {
+  std::string name = "line-art";
+  int count = 8;
+  std::uint64_t first_seed = 100;  ///< those of the rules are below
+  std::optional<double> sigma;     ///< of one sample, in fully seen white pixels; else
+  double snr_db = 30.0;            ///< of each scene's own samples
+};
+
+/// One scene with its samples, y = A x + n.
+struct Sample {
+  std::vector<float> truth;
+  std::vector<float> y;
+  double sigma = 0.0;
+};
+
+[[nodiscard]] std::vector<Sample> draw_samples(const recon::Response& response, const Eye& eye, const Scenes& scenes);
+
+/// What K iterations reach, over all scenes.
+struct Reached {
+  int iterations = 0;
+  double mean = 0.0;    ///< NMSE
+  double high = 0.0;    ///< its 90th percentile
+  double excess = 0.0;  ///< mean of objective / converged objective - 1
+};
+
+/// NMSE and objective against iterations, and where they end.
+struct Curve {
+  std::vector<Reached> reached;
+  Reached converged;
+  /// The fewest iterations from which on mean and 90th percentile stay within `share` of converged; 0: never.
+  [[nodiscard]] int within(double share) const;
+};
+
+/// Iterations 1 to `most`, denser at the beginning, and ten times `most` as converged.
+[[nodiscard]] Curve measure_curve(std::vector<recon::Reconstructor>& solvers, const std::vector<Sample>& samples,
+                                  int most);
+
+}  // namespace compueye::bench

@@ -1,0 +1,170 @@
+#include "recon/core/pdhg.hpp"
+
+#include "recon/core/duality_gap.hpp"
+#include "recon/core/frame_outcome.hpp"
+#include "recon/core/proximal.hpp"
+#include "recon/core/relaxed_steps.hpp"
+#include "recon/core/square_root.hpp"
+#include "recon/core/vector_sums.hpp"
+#include "recon/core/weighted_dual_step.hpp"
+
+namespace compueye::recon::core {
+namespace {
+
+template <class T>
+class Pdhg {
+ public:
+  Pdhg(const FrameProblem<T>& problem, Workspace& memory) noexcept
+      : problem_(problem),
+        n_(problem.pixels()),
+        sparse_basis_(problem.point.basis != BasisKind::identity),
+        coefficient_count_(sparse_basis_ ? problem.psi.coefficients() : 0),
+        row_dual_(memory.take<T>(problem.a.rows)),
+        x_(memory.take<T>(n_)),
+        basis_dual_(memory.take<T>(coefficient_count_)),
+        gradient_(memory.take<T>(n_)),
+        ahead_(memory.take<T>(n_)),
+        coefficients_(memory.take<T>(sparse_basis_ ? coefficient_count_ : 0)),
+        scratch_(memory.take<T>(sparse_basis_ ? problem.psi.scratch_size() : 0)),
+        dual_step_(problem, memory),
+        gap_(problem, problem.measure_gap, memory) {
+    const T beyond = T(1e30);
+    lo_ = problem.constrained && problem.lo > -beyond ? problem.lo : -beyond;
+    hi_ = problem.constrained && problem.hi < beyond ? problem.hi : beyond;
+    threshold_ = sparse_basis_ ? T(0) : problem.lambda / problem.rho;
+  }
+
+  FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
+    FrameInfo info = begin_outcome(problem_);
+    if (!dual_step_.begin(y, weights)) {
+      deliver(x_, false, n_, info, x);
+      return info;
+    }
+    start_cold();
+    for (int k = 1; k < problem_.point.iterations; ++k) {
+      slope();
+      descend(gradient_, T(1) / problem_.rho, threshold_, lo_, hi_, problem_.relaxation, x_, ahead_, n_);
+      rise();
+    }
+    finish(info);
+    deliver(gradient_, finite_, n_, info, x);
+    return info;
+  }
+
+ private:
+  void start_cold() noexcept {
+    for (std::size_t k = 0; k < n_; ++k) x_[k] = T(0);
+    for (std::size_t i = 0; i < problem_.a.rows; ++i) row_dual_[i] = T(0);
+    for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = T(0);
+  }
+
+  /// gradient = A'u + Psi'q
+  void slope() noexcept {
+    if (sparse_basis_) {
+      synthesise(problem_.psi, basis_dual_, gradient_, scratch_);
+    } else {
+      for (std::size_t k = 0; k < n_; ++k) gradient_[k] = T(0);
+    }
+    dual_step_.samples().adjoint_accumulate(row_dual_, gradient_);
+  }
+
+  void rise() noexcept {
+    dual_step_.apply(ahead_, row_dual_);
+    if (!sparse_basis_) return;
+    analyse(problem_.psi, ahead_, coefficients_, scratch_);
+    ascend(coefficients_, problem_.basis_step, problem_.lambda, problem_.relaxation, basis_dual_, coefficient_count_);
+  }
+
+  /// The last iteration: its p, left in gradient_, is the answer.
+  void finish(FrameInfo& info) noexcept {
+    slope();
+    const T step = T(1) / problem_.rho;
+    for (std::size_t k = 0; k < n_; ++k) {
+      const T p = prox_l1_box(x_[k] - step * gradient_[k], threshold_, lo_, hi_);
+      ahead_[k] = T(2) * p - x_[k];
+      gradient_[k] = p;
+    }
+    flush_tiny(ahead_, n_);
+    flush_tiny(gradient_, n_);
+    finite_ = all_finite(x_, n_) && all_finite(ahead_, n_);  // the projection would have turned NaN into a number
+    const double size = static_cast<double>(dot(gradient_, gradient_, n_));
+    const double moved = static_cast<double>(squared_distance(gradient_, x_, n_));
+    for (std::size_t k = 0; k < n_; ++k) x_[k] += problem_.relaxation * (gradient_[k] - x_[k]);
+    flush_tiny(x_, n_);
+    rise();
+    info.primal_residual = size > 0.0 ? square_root(moved / size) : 0.0;
+    judge(info);
+  }
+
+  void judge(FrameInfo& info) noexcept {
+    const std::size_t rows = problem_.a.rows;
+    const double of_dual = static_cast<double>(dot(row_dual_, row_dual_, rows));
+    const double off = static_cast<double>(dot(dual_step_.last_step(), dual_step_.last_step(), rows));
+    info.dual_residual = of_dual > 0.0 ? square_root(off / of_dual) : 0.0;
+    info.iterations = problem_.point.iterations;
+    const T* penalised = gradient_;
+    if (sparse_basis_) {
+      analyse(problem_.psi, gradient_, coefficients_, scratch_);
+      penalised = coefficients_;
+    }
+    const std::size_t count = sparse_basis_ ? coefficient_count_ : n_;
+    const double penalty =
+        static_cast<double>(problem_.lambda) * static_cast<double>(sum_of_magnitudes(penalised, count));
+    evaluate(dual_step_.samples(), gradient_, penalty, dual_step_.row_scratch(), info);
+    info.duality_gap = gap_.measure(dual_step_.samples(), gradient_, bounded_dual(), info.objective);
+    const double step = info.primal_residual > info.dual_residual ? info.primal_residual : info.dual_residual;
+    info.health = health_by_gap(info.duality_gap, info.objective, step);
+  }
+
+  /// Relaxation may have carried it beyond its bounds.
+  const T* bounded_dual() noexcept {
+    if (!sparse_basis_ || !problem_.measure_gap) return nullptr;
+    const T bound = problem_.lambda;
+    for (std::size_t k = 0; k < coefficient_count_; ++k) {
+      const T above = basis_dual_[k] > -bound ? basis_dual_[k] : -bound;
+      coefficients_[k] = above < bound ? above : bound;
+    }
+    return coefficients_;
+  }
+
+  const FrameProblem<T>& problem_;
+  std::size_t n_;
+  bool sparse_basis_;
+  std::size_t coefficient_count_;
+  T* row_dual_;
+  T* x_;
+  T* basis_dual_;
+  T* gradient_;
+  T* ahead_;
+  T* coefficients_;
+  T* scratch_;
+  WeightedDualStep<T> dual_step_;
+  DualityGap<T> gap_;
+  T lo_ = T(0);
+  T hi_ = T(0);
+  T threshold_ = T(0);
+  bool finite_ = true;
+};
+
+}  // namespace
+
+template <class T>
+FrameInfo solve_pdhg(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
+                     float* x) noexcept {
+  Workspace memory(workspace);
+  return Pdhg<T>(problem, memory).solve(y, weights, x);
+}
+
+template <class T>
+std::size_t pdhg_bytes(const FrameProblem<T>& problem) noexcept {
+  Workspace counter;
+  const Pdhg<T> pdhg(problem, counter);
+  return counter.used();
+}
+
+template FrameInfo solve_pdhg(const FrameProblem<float>&, const float*, const float*, std::byte*, float*) noexcept;
+template FrameInfo solve_pdhg(const FrameProblem<double>&, const float*, const float*, std::byte*, float*) noexcept;
+template std::size_t pdhg_bytes(const FrameProblem<float>&) noexcept;
+template std::size_t pdhg_bytes(const FrameProblem<double>&) noexcept;
+
+}  // namespace compueye::recon::core

@@ -1,0 +1,194 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "calib/nominal.hpp"
+#include "recon/dual_step_tables.hpp"
+#include "recon/leading_modes.hpp"
+#include "recon/mirror_symmetry.hpp"
+#include "tests/recon/random_problem.hpp"
+#include "tests/recon/solve_frame.hpp"
+
+using namespace compueye;
+using namespace compueye::tests;
+
+namespace {
+
+/// 20 x 20 ommatidia of 40 degrees: a few modes far above the rest, as on a large eye.
+recon::Response wide_eye() {
+  constexpr double deg = std::numbers::pi / 180.0;
+  hal::EyeGeometry eye;
+  eye.rows = eye.columns = 20;
+  eye.interommatidial_rad = 3.0 * deg;
+  eye.acceptance_rad = 40.0 * deg;
+  return calib::nominal_response(eye, {32, 32, 30.0, 30.0, 20.0}).value();
+}
+
+/// The same rows turned so that no symmetry is left.
+recon::Response without_symmetry(const recon::Response& a) {
+  std::vector<double> values(static_cast<std::size_t>(a.rows()) * static_cast<std::size_t>(a.cols()), 0.0);
+  for (int m = 0; m < a.rows(); ++m) {
+    double* row = values.data() + static_cast<std::size_t>(m) * static_cast<std::size_t>(a.cols());
+    a.for_each_in_row(m, [&](std::int32_t n, double v) { row[n] = v * (1.0 + 0.01 * (m % 7)); });
+  }
+  return recon::Response::from_dense(a.rows(), a.cols(), values).value();
+}
+
+struct Frame {
+  std::vector<float> y;
+  recon::Objective objective;
+};
+
+Frame noisy_blocks(const recon::Response& a) {
+  Random random(5);
+  std::vector<double> truth(static_cast<std::size_t>(a.cols()), 0.1), y(static_cast<std::size_t>(a.rows()));
+  for (std::size_t k = 0; k < truth.size(); ++k) truth[k] += (k / 8 % 4 == 1 && k / 256 % 2 == 0) ? 0.7 : 0.0;
+  a.forward(truth, y);
+  Frame frame;
+  for (const double v : y) frame.y.push_back(static_cast<float>(v + 0.1 * random.normal()));
+  frame.objective.basis = recon::BasisKind::dct;
+  frame.objective.constraint = recon::ConstraintKind::box;
+  frame.objective.lambda = 0.1;
+  return frame;
+}
+
+recon::Plan plan_of(recon::SolverKind solver, int iterations, recon::Precision precision = recon::Precision::f32) {
+  recon::Plan plan;
+  plan.solver = solver;
+  plan.iterations = iterations;
+  plan.precision = precision;
+  return plan;
+}
+
+recon::FrameInfo solved(const recon::Response& a, const Frame& frame, const recon::Plan& plan,
+                        const std::vector<float>& weights = {}) {
+  const auto solver = recon::Reconstructor::create(a, 32, 32, frame.objective, plan);
+  REQUIRE(solver.has_value());
+  return solve_frame(*solver, frame.y, weights).info;
+}
+
+}  // namespace
+
+TEST_CASE("the deflated step is the matrix it stands for, by parity classes and whole") {
+  const recon::Response symmetric = wide_eye();
+  for (const recon::Response& eye : {symmetric, without_symmetry(symmetric)}) {
+    const recon::Response a = eye.select_rows(eye.seeing_rows());
+    const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a, 32, 32));
+    const int rank = 96;
+    const double step = 0.05, share = 0.25;
+    const auto modes = recon::leading_modes(a, 32, 32, rank, {}).value();
+    REQUIRE(modes.size() == recon::modes_size(classes, rank));
+    const auto tables = recon::dual_step_tables<float>(classes, modes, rank, step, share);
+    const auto order = static_cast<std::size_t>(a.rows());
+    // F v from F's definition: eigenvectors of A A' are F's, so F (A A' v) is a function of the modes alone.
+    Random random(8);
+    std::vector<float> v(order), out(order), scratch(tables.view.scratch_size());
+    for (float& value : v) value = static_cast<float>(random.normal());
+    recon::core::apply(tables.view, v.data(), out.data(), scratch.data());
+    std::vector<double> expected(order, 0.0);
+    const float* values = modes.data();
+    for (std::size_t c = 0; c < classes.count(); ++c) {
+      const std::size_t count = recon::modes_of_class(classes, c, rank),
+                        size = static_cast<std::size_t>(classes.order(c));
+      const auto gain = [&](std::size_t k) {
+        return 1.0 / (1.0 + step * static_cast<double>(values[k]) / (1.0 - share));
+      };
+      std::vector<double> in(size, 0.0), moved(size, 0.0);
+      for (std::size_t m = 0; m < order; ++m) {
+        const int p = classes.index(c, static_cast<int>(m));
+        if (p >= 0)
+          in[static_cast<std::size_t>(p)] += classes.share(c, static_cast<int>(m)) * static_cast<double>(v[m]);
+      }
+      const float* vectors = values + count + 1;
+      for (std::size_t p = 0; p < size; ++p) moved[p] = gain(count) * in[p];
+      for (std::size_t k = 0; k < count; ++k) {
+        double along = 0.0;
+        for (std::size_t p = 0; p < size; ++p) along += static_cast<double>(vectors[p * count + k]) * in[p];
+        for (std::size_t p = 0; p < size; ++p) {
+          moved[p] += (gain(k) - gain(count)) * along * static_cast<double>(vectors[p * count + k]);
+        }
+      }
+      for (std::size_t m = 0; m < order; ++m) {
+        const int p = classes.index(c, static_cast<int>(m));
+        if (p >= 0) expected[m] += classes.share(c, static_cast<int>(m)) * moved[static_cast<std::size_t>(p)];
+      }
+      values += count + 1 + count * size;
+    }
+    // Each of the modes passes with an error of 2^-9 of itself, in directions that have nothing to do with each other.
+    double error = 0.0, size = 0.0;
+    for (std::size_t m = 0; m < order; ++m) {
+      error += std::pow(static_cast<double>(out[m]) - expected[m], 2);
+      size += std::pow(static_cast<double>(v[m]), 2);
+    }
+    CHECK(std::sqrt(error) <= std::sqrt(size) / 512.0);
+
+    const std::vector<std::size_t> index{0, 7, 31, order - 1};
+    std::vector<double> part(16);
+    recon::core::restrict_to(tables.view, index.data(), 4, part.data(), scratch.data());
+    for (std::size_t s = 0; s < 4; ++s) {
+      std::vector<float> unit(order, 0.0F), column(order);
+      unit[index[s]] = 1.0F;
+      recon::core::apply(tables.view, unit.data(), column.data(), scratch.data());
+      for (std::size_t r = s; r < 4; ++r) {
+        CHECK(part[r * 4 + s] == doctest::Approx(static_cast<double>(column[index[r]])).epsilon(1e-4));
+      }
+    }
+  }
+}
+
+TEST_CASE("a few modes make pdhg converge in tens of iterations, with and without symmetry") {
+  const recon::Response symmetric = wide_eye();
+  for (const recon::Response& a : {symmetric, without_symmetry(symmetric)}) {
+    const Frame frame = noisy_blocks(a);
+    const auto best = solved(a, frame, plan_of(recon::SolverKind::admm, 20'000, recon::Precision::f64)).objective;
+    recon::Plan plan = plan_of(recon::SolverKind::pdhg, 200);
+    plan.rank = 96;
+    const double with_modes = solved(a, frame, plan).objective / best - 1.0;
+    plan.rank = 1;
+    const double with_one = solved(a, frame, plan).objective / best - 1.0;
+    CHECK(with_modes < 0.01);
+    CHECK(with_modes > -1e-4);
+    CHECK(with_one > 3.0 * with_modes);
+  }
+}
+
+TEST_CASE("missing channels do not spoil the metric") {
+  const recon::Response a = wide_eye();
+  const Frame frame = noisy_blocks(a);
+  std::vector<float> weights(frame.y.size(), 1.0F);
+  for (std::size_t m = 3; m < weights.size(); m += 20) weights[m] = m % 40 == 3 ? 0.0F : 0.3F;  // 5 %
+  recon::Plan plan = plan_of(recon::SolverKind::pdhg, 100);
+  plan.rank = 96;
+  const auto excess = [&](const std::vector<float>& w) {
+    const double best = solved(a, frame, plan_of(recon::SolverKind::admm, 20'000, recon::Precision::f64), w).objective;
+    return solved(a, frame, plan, w).objective / best - 1.0;
+  };
+  const double all = excess({}), some = excess(weights);
+  MESSAGE("excess of the objective: ", all, " with all channels, ", some, " with 5 % missing or weak");
+  CHECK(some < 2.0 * all + 1e-3);
+}
+
+TEST_CASE("stored modes give the same frames, and only those of the same rank") {
+  const recon::Response a = wide_eye();
+  const Frame frame = noisy_blocks(a);
+  recon::Plan plan = plan_of(recon::SolverKind::pdhg, 10);
+  plan.rank = 64;
+  const auto first = recon::Reconstructor::create(a, 32, 32, frame.objective, plan).value();
+  const recon::Factor wanted = recon::Reconstructor::wanted_factor(a, 32, 32, frame.objective, plan);
+  CHECK(first.factor().rank == 64);
+  CHECK(wanted.rank == 64);
+  CHECK(wanted.order == first.factor().order);
+  CHECK(wanted.rho == first.factor().rho);
+  const auto again = recon::Reconstructor::create(a, 32, 32, frame.objective, plan, first.factor()).value();
+  CHECK(solve_frame(first, frame.y).x == solve_frame(again, frame.y).x);
+  // One set of modes serves every basis and every step.
+  recon::Objective tv = frame.objective;
+  tv.basis = recon::BasisKind::tv;
+  plan.rho = 3.0;
+  CHECK(recon::Reconstructor::create(a, 32, 32, tv, plan, first.factor()).has_value());
+  plan.rank = 48;
+  CHECK(recon::Reconstructor::create(a, 32, 32, frame.objective, plan, first.factor()).error().code ==
+        hal::ErrorCode::stale);
+}
