@@ -44,7 +44,7 @@ struct Operator {
   std::optional<bench::Workspace> memory;
 
   explicit Operator(const recon::Response& seeing, const bench::Eye& eye) {
-    static_cast<void>(recon::fill_operator(seeing, eye.plane.rows, eye.plane.cols, tables));
+    static_cast<void>(recon::fill_operator(seeing, eye.plane.rows, eye.plane.cols, std::nullopt, tables));
     memory.emplace(view().scratch_size() * sizeof(float) + 64);
   }
   [[nodiscard]] const core::LinearOperator<float>& view() const { return tables.problem.a; }

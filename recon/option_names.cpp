@@ -23,6 +23,14 @@ constexpr std::array<Named<BasisKind>, 6> bases{{
     {"dft", BasisKind::dft},
     {"tv", BasisKind::tv},
 }};
+constexpr std::array<Named<OperatorKind>, 6> operators{{
+    {"dense", OperatorKind::dense},
+    {"csr", OperatorKind::csr},
+    {"running-sums", OperatorKind::running_sums},
+    {"dense-runs", OperatorKind::dense_runs},
+    {"dense-runs-bf16", OperatorKind::dense_runs_bf16},
+    {"dense-runs-int8", OperatorKind::dense_runs_int8},
+}};
 constexpr std::array<Named<ConstraintKind>, 3> constraints{{
     {"none", ConstraintKind::none},
     {"nonnegative", ConstraintKind::nonnegative},
@@ -49,6 +57,10 @@ std::span<const Named<ConstraintKind>> constraint_names() noexcept {
   return constraints;
 }
 
+std::span<const Named<OperatorKind>> operator_names() noexcept {
+  return operators;
+}
+
 std::string_view name(SolverKind kind) noexcept {
   if (kind == SolverKind::adm_as_published) return "adm as published";
   return name_in(solver_names(), kind);
@@ -70,6 +82,12 @@ std::string_view name(OperatorKind kind) noexcept {
       return "running sums";
     case OperatorKind::running_sums_symmetric:
       return "running sums, four rows at once";
+    case OperatorKind::dense_runs:
+      return "dense runs";
+    case OperatorKind::dense_runs_bf16:
+      return "dense runs in bf16";
+    case OperatorKind::dense_runs_int8:
+      return "dense runs in int8";
   }
   return "unknown";
 }

@@ -18,6 +18,8 @@ struct Named {
 [[nodiscard]] std::span<const Named<SolverKind>> solver_names() noexcept;
 [[nodiscard]] std::span<const Named<BasisKind>> basis_names() noexcept;
 [[nodiscard]] std::span<const Named<ConstraintKind>> constraint_names() noexcept;
+/// What Plan::op may be: running-sums stands for every one of them.
+[[nodiscard]] std::span<const Named<OperatorKind>> operator_names() noexcept;
 
 [[nodiscard]] std::string_view name(SolverKind kind) noexcept;
 [[nodiscard]] std::string_view name(BasisKind kind) noexcept;

@@ -12,7 +12,7 @@
 #include "recon/dct_tables.hpp"
 #include "recon/deflation_rule.hpp"
 #include "recon/fourier_tables.hpp"
-#include "recon/mirror_symmetry.hpp"
+#include "recon/operator_choice.hpp"
 #include "recon/parity_classes.hpp"
 #include "recon/singular_modes.hpp"
 #include "recon/smoothing.hpp"
@@ -20,23 +20,6 @@
 
 namespace compueye::recon {
 namespace {
-
-/// What one application takes, in loads of a sparse entry: dense rows are read seven times as fast an entry, a tap of a
-/// running sum, or of four at once, takes about as long as a sparse entry, and the sums themselves a load a pixel.
-constexpr double dense_entry_cost = 0.15;
-
-/// The mirror images that running sums can use at once, when running sums are the quickest form; else nothing.
-std::optional<MirrorSymmetry> images_for_running_sums(const Response& seeing, int image_rows, int image_cols) {
-  const double entries = static_cast<double>(seeing.rows()) * static_cast<double>(seeing.cols());
-  const double others = std::min(dense_entry_cost * entries, static_cast<double>(seeing.nonzeros()));
-  const auto taps = static_cast<double>(running_sum_taps(seeing, image_rows, image_cols));
-  const auto pixels = static_cast<double>(seeing.cols());
-  if (taps / 4.0 + pixels >= others) return std::nullopt;
-  MirrorSymmetry symmetry = find_mirror_symmetry(seeing, image_rows, image_cols);
-  const bool four = symmetry.order() == 4 && image_rows % 2 == 0 && image_cols % 2 == 0;
-  if (!four && taps + pixels >= others) return std::nullopt;
-  return symmetry;
-}
 
 /// What only double can tell from nought would be a subnormal number in every product.
 template <class T>
@@ -68,6 +51,11 @@ void fill_sparse(const Response& seeing, OwnedTables<T>& tables) {
   }
 }
 
+core::RunValues run_values_of(OperatorKind kind) {
+  if (kind == OperatorKind::dense_runs_bf16) return core::RunValues::bf16;
+  return kind == OperatorKind::dense_runs_int8 ? core::RunValues::int8 : core::RunValues::full;
+}
+
 template <class T>
 void fill_numbers(const Objective& objective, const Plan& plan, core::FrameProblem<T>& problem) {
   constexpr T infinity = std::numeric_limits<T>::infinity();
@@ -92,31 +80,32 @@ void fill_numbers(const Objective& objective, const Plan& plan, core::FrameProbl
 }  // namespace
 
 template <class T>
-hal::Result<void> fill_operator(const Response& seeing, int image_rows, int image_cols, OwnedTables<T>& tables) {
+hal::Result<void> fill_operator(const Response& seeing, int image_rows, int image_cols,
+                                std::optional<OperatorKind> asked, OwnedTables<T>& tables) {
+  const auto chosen = choose_operator(seeing, image_rows, image_cols, asked);
+  if (!chosen) return tl::unexpected(chosen.error());
   core::LinearOperator<T>& a = tables.problem.a;
+  a.kind = chosen->kind;
   a.rows = static_cast<std::size_t>(seeing.rows());
   a.cols = static_cast<std::size_t>(seeing.cols());
-  const std::int64_t nonzeros = seeing.nonzeros();
-  if (const auto images = images_for_running_sums(seeing, image_rows, image_cols)) {
-    auto sums = running_sum_tables<T>(seeing, image_rows, image_cols, *images);
-    if (sums) {
-      tables.sums = std::move(*sums);
-      a.kind = tables.sums.view.symmetric ? OperatorKind::running_sums_symmetric : OperatorKind::running_sums;
+  switch (a.kind) {
+    case OperatorKind::running_sums:
+    case OperatorKind::running_sums_symmetric:
+      tables.sums = running_sum_tables<T>(seeing, image_rows, image_cols, chosen->images).value();
       a.sums = tables.sums.view;
       return {};
-    }
-  }
-  const double dense_cost = dense_entry_cost * static_cast<double>(a.rows) * static_cast<double>(a.cols);
-  a.kind = dense_cost < static_cast<double>(nonzeros) ? OperatorKind::dense : OperatorKind::csr;
-  constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();  // row starts are 32 bits wide
-  if (a.kind == OperatorKind::csr && nonzeros > most) {
-    return hal::fail(hal::ErrorCode::unsupported, "response",
-                     "has " + std::to_string(nonzeros) + " entries, expected at most " + std::to_string(most));
-  }
-  if (a.kind == OperatorKind::dense) {
-    fill_dense(seeing, tables);
-  } else {
-    fill_sparse(seeing, tables);
+    case OperatorKind::dense_runs:
+    case OperatorKind::dense_runs_bf16:
+    case OperatorKind::dense_runs_int8:
+      tables.runs = dense_run_tables<T>(seeing, image_cols, run_values_of(a.kind)).value();
+      a.runs = tables.runs.view;
+      return {};
+    case OperatorKind::dense:
+      fill_dense(seeing, tables);
+      break;
+    case OperatorKind::csr:
+      fill_sparse(seeing, tables);
+      break;
   }
   a.values = tables.values.data();
   a.row_start = tables.row_start.data();
@@ -226,8 +215,8 @@ template hal::Result<void> fill_modes(const Response&, const Objective&, const P
                                       OwnedTables<float>&);
 template hal::Result<void> fill_modes(const Response&, const Objective&, const Plan&, const Progress&,
                                       OwnedTables<double>&);
-template hal::Result<void> fill_operator(const Response&, int, int, OwnedTables<float>&);
-template hal::Result<void> fill_operator(const Response&, int, int, OwnedTables<double>&);
+template hal::Result<void> fill_operator(const Response&, int, int, std::optional<OperatorKind>, OwnedTables<float>&);
+template hal::Result<void> fill_operator(const Response&, int, int, std::optional<OperatorKind>, OwnedTables<double>&);
 template void fill_basis(BasisKind, int, int, OwnedTables<float>&);
 template void fill_basis(BasisKind, int, int, OwnedTables<double>&);
 template void fill_choice(const Response&, const Objective&, const Plan&, OwnedTables<float>&);

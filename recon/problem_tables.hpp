@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "hal/result.hpp"
 #include "recon/core/frame_problem.hpp"
+#include "recon/dense_run_tables.hpp"
 #include "recon/dual_step_tables.hpp"
 #include "recon/reconstructor.hpp"
 #include "recon/running_sum_tables.hpp"
@@ -20,6 +22,7 @@ struct OwnedTables {
   std::vector<std::int32_t> columns;
   RunningSumTables<T> sums;
   DualStepTables<T> dual_step;
+  DenseRunTables<T> runs;
   std::vector<T> row_table;  // of the basis, or of the metric's DCT
   std::vector<T> col_table;
   std::vector<T> metric;
@@ -38,15 +41,15 @@ struct OwnedTables {
             dual_steps.size() + atom_norms.size() + modes.size() + mode_weights.size() + class_share.size()) *
                sizeof(T) +
            (row_start.size() + columns.size() + class_index.size()) * sizeof(std::uint32_t) + sums.bytes() +
-           dual_step.bytes();
+           dual_step.bytes() + runs.bytes();
   }
 };
 
-/// A of the seeing rows in the form that is quickest to apply: as running sums where rows are convex, else dense or
-/// sparse. Error unsupported: more entries than 32-bit row starts can number.
+/// A of the seeing rows in the form that choose_operator() finds, whose errors it has. For a lossy one `seeing` must be
+/// what quantised() makes of the response.
 template <class T>
 [[nodiscard]] hal::Result<void> fill_operator(const Response& seeing, int image_rows, int image_cols,
-                                              OwnedTables<T>& tables);
+                                              std::optional<OperatorKind> asked, OwnedTables<T>& tables);
 
 /// Psi and the metric that goes with it.
 template <class T>

@@ -28,6 +28,7 @@
 #include "recon/penalty_rule.hpp"
 #include "recon/problem_checks.hpp"
 #include "recon/problem_tables.hpp"
+#include "recon/quantised_response.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -102,7 +103,7 @@ struct Reconstructor::Tables {
   hal::Result<void> fill(const Response& response, std::optional<Factor> stored, const Progress& progress) {
     OwnedTables<T>& tables = by_precision.template emplace<OwnedTables<T>>();
     const Response sees = response.select_rows(seeing);
-    if (auto filled = fill_operator(sees, image_rows, image_cols, tables); !filled) return filled;
+    if (auto filled = fill_operator(sees, image_rows, image_cols, plan.op, tables); !filled) return filled;
     fill_basis(objective.basis, image_rows, image_cols, tables);
     tables.problem.image_rows = static_cast<std::size_t>(image_rows);
     tables.problem.image_cols = static_cast<std::size_t>(image_cols);
@@ -180,6 +181,16 @@ Reconstructor::~Reconstructor() = default;
 hal::Result<Reconstructor> Reconstructor::create(const Response& response, int image_rows, int image_cols,
                                                  const Objective& objective, const Plan& plan,
                                                  std::optional<Factor> factor, const Progress& progress) {
+  if (plan.op && is_lossy(*plan.op)) {
+    return create_as_applied(quantised(response, *plan.op), image_rows, image_cols, objective, plan, std::move(factor),
+                             progress);
+  }
+  return create_as_applied(response, image_rows, image_cols, objective, plan, std::move(factor), progress);
+}
+
+hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& response, int image_rows, int image_cols,
+                                                            const Objective& objective, const Plan& plan,
+                                                            std::optional<Factor> factor, const Progress& progress) {
   const auto checked = check_choice(objective, plan);
   if (!checked) return tl::unexpected(checked.error());
   if (image_rows < 1 || image_cols < 1 ||

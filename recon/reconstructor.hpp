@@ -41,6 +41,10 @@ struct Plan {
   /// minimization"). For pictures of few lit pixels, e a tenth of their brightness; docs/lambda-rule.md says when it
   /// pays. FrameInfo's objective is the weighted one, without a duality gap. 0: one pass.
   double l1_reweighting = 0.0;
+  /// How A is applied; nothing: the quickest form that keeps every digit of the precision (recon/operator_choice.hpp).
+  /// running_sums stands for any number of rows at once. Dense runs in bf16 or int8 have to be asked for: the problem
+  /// that is then solved, factor and modes included, is that of the rounded matrix (recon/quantised_response.hpp).
+  std::optional<OperatorKind> op = std::nullopt;
   /// tsvd: how many singular pairs to keep; 0 = those with s^2 >= lambda, which is where tikhonov's filter is a half.
   int rank = 0;
   /// Seeing channels that may have a weight other than one in a frame; -1 = a tenth of them, rounded up. Costs
@@ -58,6 +62,7 @@ class Reconstructor {
   /// refused (error stale) when its rho or order does not fit. Errors: usage, mismatch, interrupted, and out_of_range:
   /// a setting beyond its range; a response that sees nothing or whose columns have a norm outside 1e-12..1e12 (root
   /// mean square), because float32 could not hold its factor; a rho too small or too large for the precision.
+  /// unsupported: an operator that the response does not fit.
   [[nodiscard]] static hal::Result<Reconstructor> create(const Response& response, int image_rows, int image_cols,
                                                          const Objective& objective, const Plan& plan,
                                                          std::optional<Factor> factor = std::nullopt,
@@ -103,6 +108,9 @@ class Reconstructor {
 
  private:
   struct Tables;
+  static hal::Result<Reconstructor> create_as_applied(const Response& response, int image_rows, int image_cols,
+                                                      const Objective& objective, const Plan& plan,
+                                                      std::optional<Factor> factor, const Progress& progress);
   explicit Reconstructor(std::unique_ptr<Tables> tables) noexcept;
   std::unique_ptr<Tables> tables_;
 };

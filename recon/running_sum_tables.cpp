@@ -80,11 +80,15 @@ Orbits orbits_of(int rows, const MirrorSymmetry& symmetry) {
 
 }  // namespace
 
+bool running_sums_fit(int image_rows, int image_cols) noexcept {
+  const std::int64_t half_rows = (image_rows + 1) / 2, half_cols = (image_cols + 1) / 2;
+  return half_rows * half_cols <= 65536;
+}
+
 template <class T>
 std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, int image_rows, int image_cols,
                                                       const MirrorSymmetry& symmetry) {
-  const int half_rows = (image_rows + 1) / 2, half_cols = (image_cols + 1) / 2;
-  if (static_cast<std::int64_t>(half_rows) * half_cols > 65536) return std::nullopt;
+  if (!running_sums_fit(image_rows, image_cols)) return std::nullopt;
   RunningSumTables<T> tables;
   const bool symmetric = symmetry.order() == 4 && image_rows % 2 == 0 && image_cols % 2 == 0;
   std::vector<std::int32_t> firsts;

@@ -26,9 +26,12 @@ struct RunningSumTables {
   }
 };
 
+/// Whether 16 bits can number the pixels of a quadrant.
+[[nodiscard]] bool running_sums_fit(int image_rows, int image_cols) noexcept;
+
 /// A response as running sums: four rows a table where `symmetry` has all four images and the picture's sides are even,
-/// else a table a row. Differences below the rounding of T, relative to the largest entry, are left out. Nothing when a
-/// quadrant has more than 65,536 pixels, which 16 bits cannot number.
+/// else a table a row. Differences below the rounding of T, relative to the largest entry, are left out. Nothing unless
+/// running_sums_fit().
 template <class T>
 [[nodiscard]] std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, int image_rows,
                                                                     int image_cols, const MirrorSymmetry& symmetry);

@@ -4,7 +4,15 @@
 
 namespace compueye::recon {
 
-enum class OperatorKind : std::uint8_t { dense, csr, running_sums, running_sums_symmetric };
+enum class OperatorKind : std::uint8_t {
+  dense,
+  csr,
+  running_sums,
+  running_sums_symmetric,
+  dense_runs,
+  dense_runs_bf16,
+  dense_runs_int8
+};
 enum class BasisKind : std::uint8_t { identity, dct, haar, db4, dft, tv };
 enum class SolverKind : std::uint8_t { admm, tikhonov, fista, chambolle_pock, adm, adm_as_published, omp, tsvd, pdhg };
 enum class Precision : std::uint8_t { f32, f64 };

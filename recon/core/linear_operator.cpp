@@ -75,6 +75,10 @@ void forward_of(const LinearOperator<T>& a, const T* x, T* y, T* scratch) noexce
       return forward(a.sums, x, y, scratch);
     case OperatorKind::csr:
       return csr_forward_clone(a, x, y);
+    case OperatorKind::dense_runs:
+    case OperatorKind::dense_runs_bf16:
+    case OperatorKind::dense_runs_int8:
+      return forward(a.runs, x, y);
     case OperatorKind::dense:
       break;
   }
@@ -89,6 +93,10 @@ void adjoint_of(const LinearOperator<T>& a, const T* y, T* x, T* scratch) noexce
       return adjoint_accumulate(a.sums, y, x, scratch);
     case OperatorKind::csr:
       return csr_adjoint(a, y, x);
+    case OperatorKind::dense_runs:
+    case OperatorKind::dense_runs_bf16:
+    case OperatorKind::dense_runs_int8:
+      return adjoint_accumulate(a.runs, y, x);
     case OperatorKind::dense:
       break;
   }
@@ -97,7 +105,56 @@ void adjoint_of(const LinearOperator<T>& a, const T* y, T* x, T* scratch) noexce
   for (; m < a.rows; ++m) accumulate(a.values + m * a.cols, y[m], x, a.cols);
 }
 
+template <class T>
+std::size_t bytes_of(const LinearOperator<T>& a) noexcept {
+  switch (a.kind) {
+    case OperatorKind::running_sums:
+    case OperatorKind::running_sums_symmetric:
+      return bytes(a.sums);
+    case OperatorKind::dense_runs:
+    case OperatorKind::dense_runs_bf16:
+    case OperatorKind::dense_runs_int8:
+      return bytes(a.runs);
+    case OperatorKind::csr:
+      return a.row_start[a.rows] * (sizeof(T) + sizeof(std::int32_t)) + (a.rows + 1) * sizeof(std::uint32_t);
+    case OperatorKind::dense:
+      break;
+  }
+  return a.rows * a.cols * sizeof(T);
+}
+
+template <class T>
+std::size_t flops_of(const LinearOperator<T>& a) noexcept {
+  switch (a.kind) {
+    case OperatorKind::running_sums:
+    case OperatorKind::running_sums_symmetric:
+      return flops(a.sums);
+    case OperatorKind::dense_runs:
+    case OperatorKind::dense_runs_bf16:
+    case OperatorKind::dense_runs_int8:
+      return flops(a.runs);
+    case OperatorKind::csr:
+      return a.row_start[a.rows];
+    case OperatorKind::dense:
+      break;
+  }
+  return a.rows * a.cols;
+}
+
 }  // namespace
+
+std::size_t bytes(const LinearOperator<float>& a) noexcept {
+  return bytes_of(a);
+}
+std::size_t bytes(const LinearOperator<double>& a) noexcept {
+  return bytes_of(a);
+}
+std::size_t flops(const LinearOperator<float>& a) noexcept {
+  return flops_of(a);
+}
+std::size_t flops(const LinearOperator<double>& a) noexcept {
+  return flops_of(a);
+}
 
 void forward(const LinearOperator<float>& a, const float* x, float* y, float* scratch) noexcept {
   forward_of(a, x, y, scratch);

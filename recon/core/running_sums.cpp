@@ -166,7 +166,33 @@ COMPUEYE_INLINE void adjoint_of(const RunningSums<T>& a, const T* y, T* x, T* sc
   sum_inward(a, sums, x);
 }
 
+template <class T>
+std::size_t bytes_of(const RunningSums<T>& a) {
+  const std::size_t taps = a.first[4 * a.tables];
+  return taps * (sizeof(T) + sizeof(std::uint16_t)) + (4 * a.tables + 1) * sizeof(std::uint32_t) +
+         (a.symmetric ? 4 * a.tables * sizeof(std::int32_t) : 0);
+}
+
+template <class T>
+std::size_t flops_of(const RunningSums<T>& a) {
+  const std::size_t taps = a.first[4 * a.tables];
+  return taps * (a.symmetric ? 4 : 1) + 4 * a.half_rows() * a.half_cols();
+}
+
 }  // namespace
+
+std::size_t bytes(const RunningSums<float>& a) noexcept {
+  return bytes_of(a);
+}
+std::size_t bytes(const RunningSums<double>& a) noexcept {
+  return bytes_of(a);
+}
+std::size_t flops(const RunningSums<float>& a) noexcept {
+  return flops_of(a);
+}
+std::size_t flops(const RunningSums<double>& a) noexcept {
+  return flops_of(a);
+}
 
 COMPUEYE_MULTIVERSION void forward(const RunningSums<float>& a, const float* x, float* y, float* scratch) noexcept {
   forward_of(a, x, y, scratch);

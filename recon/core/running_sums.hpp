@@ -31,6 +31,12 @@ struct RunningSums {
   [[nodiscard]] std::size_t scratch_size() const noexcept { return 4 * half_rows() * half_cols(); }
 };
 
+/// Bytes of tables that one application reads, and its multiply-adds and additions.
+std::size_t bytes(const RunningSums<float>& a) noexcept;
+std::size_t bytes(const RunningSums<double>& a) noexcept;
+std::size_t flops(const RunningSums<float>& a) noexcept;
+std::size_t flops(const RunningSums<double>& a) noexcept;
+
 /// y = A x
 void forward(const RunningSums<float>& a, const float* x, float* y, float* scratch) noexcept;
 void forward(const RunningSums<double>& a, const double* x, double* y, double* scratch) noexcept;

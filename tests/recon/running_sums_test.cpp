@@ -154,7 +154,7 @@ TEST_CASE("running sums are A and A' within the bound of their sums, with symmet
 TEST_CASE("an eye's operator is running sums, a matrix without runs is not") {
   const auto kind_of = [](const Response& a, int rows, int cols) {
     recon::OwnedTables<float> tables;
-    REQUIRE(recon::fill_operator(a, rows, cols, tables).has_value());
+    REQUIRE(recon::fill_operator(a, rows, cols, std::nullopt, tables).has_value());
     return tables.problem.a.kind;
   };
   Random random(63);

@@ -58,6 +58,12 @@ Kind kind_of(std::span<const Named<Kind>> names, const V& value) {
   return found == names.end() ? Kind{} : found->kind;
 }
 
+std::vector<std::string_view> operator_words() {
+  std::vector<std::string_view> list = words(operator_names());
+  list.insert(list.begin(), "auto");
+  return list;
+}
+
 std::vector<std::string_view> lattice_words() {
   using hal::Lattice;
   std::vector<std::string_view> list;
@@ -362,6 +368,16 @@ std::vector<KeySpec> solver_keys() {
        .fallback = V{1.7},
        .meaning = "ADMM over-relaxation",
        .store = [](Board& b, const V& v) { b.reconstruction.relaxation = real_of(v); }},
+      {.section = "reconstruction",
+       .name = "operator",
+       .type = choice,
+       .choices = operator_words(),
+       .fallback = V{std::string("auto")},
+       .meaning = "how A is applied; auto is the quickest that keeps every digit, bf16 and int8 round the response",
+       .store =
+           [](Board& b, const V& v) {
+             if (text_of(v) != "auto") b.reconstruction.op = kind_of(operator_names(), v);
+           }},
   };
 }
 

@@ -9,6 +9,7 @@ using recon::basis_names;
 using recon::constraint_names;
 using recon::name;
 using recon::Named;
+using recon::operator_names;
 using recon::solver_names;
 
 }  // namespace compueye::firmware

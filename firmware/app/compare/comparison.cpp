@@ -12,6 +12,7 @@
 #include "recon/mirror_symmetry.hpp"
 #include "recon/option_names.hpp"
 #include "recon/penalty_rule.hpp"
+#include "recon/quantised_response.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -38,8 +39,11 @@ class Runner {
         samples_(samples),
         clock_(clock),
         progress_(progress),
-        hash_(samples.response.content_hash()),
-        seeing_(static_cast<int>(samples.response.seeing_rows().size())) {}
+        op_(board.reconstruction.op),
+        rounded_(op_ && recon::is_lossy(*op_) ? std::optional(recon::quantised(samples.response, *op_)) : std::nullopt),
+        response_(rounded_ ? *rounded_ : samples.response),
+        hash_(response_.content_hash()),
+        seeing_(static_cast<int>(response_.seeing_rows().size())) {}
 
   Result<ComparedRow> run(const Contender& contender) {
     ComparedRow row;
@@ -66,6 +70,7 @@ class Runner {
       plan.iterations = std::min(more_without_factor * plan.iterations, 1'000'000);
     if (options_.iterations) plan.iterations = static_cast<int>(*options_.iterations);
     plan.relaxation = board_.reconstruction.relaxation;
+    plan.op = op_;
     // The board's rho was chosen for the board's metric, and is no step of pdhg.
     const bool penalised = contender.solver == recon::SolverKind::admm || contender.solver == recon::SolverKind::adm;
     if (penalised && recon::metric_of(contender.basis) == recon::metric_of(board_.reconstruction.basis)) {
@@ -83,8 +88,8 @@ class Runner {
     if (options_.lambda) return *options_.lambda;
     const bool boards = contender.basis == board_.reconstruction.basis && shares_objective(contender.solver);
     if (boards && board_.reconstruction.lambda && !options_.sigma) return *board_.reconstruction.lambda;
-    return recon::lambda_by_rule(samples_.response, board_.object.rows, board_.object.cols, contender.solver,
-                                 contender.basis, samples_.sigma);
+    return recon::lambda_by_rule(response_, board_.object.rows, board_.object.cols, contender.solver, contender.basis,
+                                 samples_.sigma);
   }
 
   Result<recon::Reconstructor> set_up(const Contender& contender, ComparedRow& row) {
@@ -96,15 +101,15 @@ class Runner {
     const recon::Plan plan = plan_of(contender);
     const int rows = board_.object.rows, cols = board_.object.cols;
     if (!recon::uses_factor(contender.solver)) {
-      return recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, std::nullopt, progress_);
+      return recon::Reconstructor::create(response_, rows, cols, objective, plan, std::nullopt, progress_);
     }
-    const recon::Factor wanted = recon::Reconstructor::wanted_factor(samples_.response, rows, cols, objective, plan);
+    const recon::Factor wanted = recon::Reconstructor::wanted_factor(response_, rows, cols, objective, plan);
     for (const recon::Factor& factor : factors_) {
       if (factor.metric != wanted.metric || factor.rho != wanted.rho || factor.rank != wanted.rank) continue;
-      return recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, factor, progress_);
+      return recon::Reconstructor::create(response_, rows, cols, objective, plan, factor, progress_);
     }
     KeptFactor kept(board_.folder / ".cache", {hash_, wanted.rho, wanted.order, wanted.metric, wanted.rank});
-    auto made = recon::Reconstructor::create(samples_.response, rows, cols, objective, plan, kept.take(), progress_);
+    auto made = recon::Reconstructor::create(response_, rows, cols, objective, plan, kept.take(), progress_);
     if (!made) return made;
     if (kept.origin() != FactorOrigin::kept) kept.keep(made->factor());
     notes_.insert(notes_.end(), kept.notes().begin(), kept.notes().end());
@@ -144,6 +149,9 @@ class Runner {
   const CompareSamples& samples_;
   const hal::Clock& clock_;
   const recon::Progress& progress_;
+  std::optional<recon::OperatorKind> op_;
+  std::optional<recon::Response> rounded_;  // as a lossy operator holds it
+  const recon::Response& response_;         // that solvers are set up with
   std::uint64_t hash_;
   int seeing_;
   std::vector<recon::Factor> factors_;

@@ -8,6 +8,7 @@
 #include "firmware/app/board/dead_ommatidia.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/penalty_rule.hpp"
+#include "recon/quantised_response.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -36,6 +37,7 @@ recon::Plan plan_of(const Board& board, const EyeRequest& request, std::int64_t 
   plan.iterations = request.iterations.value_or(board.reconstruction.iterations);
   plan.rho = board.reconstruction.rho.value_or(0.0);
   plan.relaxation = board.reconstruction.relaxation;
+  plan.op = board.reconstruction.op;
   // As many as the correction lets pass, so that no usable frame is too much for the solver.
   plan.max_reweighted =
       static_cast<int>(std::ceil(board.sensor.max_missing_share * static_cast<double>(seeing) + 1e-9));
@@ -62,6 +64,10 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const EyeRequest& reque
   ReadyEye eye;
   auto response = living_response(board, eye.sees_, progress);
   if (!response) return tl::unexpected(std::move(response.error()));
+  if (board.reconstruction.op && recon::is_lossy(*board.reconstruction.op)) {
+    // The factor is kept under the hash of the matrix that it belongs to.
+    **response = recon::quantised(**response, *board.reconstruction.op);
+  }
   const recon::Response& a = **response;
   if (progress && !progress("lambda by rule", 0.0, 0.0)) {
     return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");

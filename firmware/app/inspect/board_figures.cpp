@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -14,10 +15,12 @@
 #include "calib/nominal.hpp"
 #include "firmware/app/board/dead_ommatidia.hpp"
 #include "firmware/app/board/reconstruction_names.hpp"
+#include "firmware/app/inspect/operator_lines.hpp"
 #include "firmware/app/report/number_text.hpp"
 #include "firmware/files/factor_cache.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/penalty_rule.hpp"
+#include "recon/quantised_response.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -157,12 +160,16 @@ Result<void> add_board_figures(const Board& board, const recon::Progress& progre
   add_solver(board, figures);
   auto nominal = calib::nominal_response(board.eye, board.object, progress);
   if (!nominal) return tl::unexpected(std::move(nominal.error()));
-  const recon::Response a = without_dead(*nominal, board.sensor.dead);
+  const std::optional<recon::OperatorKind> op = board.reconstruction.op;
+  const recon::Response a =
+      recon::quantised(without_dead(*nominal, board.sensor.dead), op.value_or(recon::OperatorKind::csr));
   const auto seeing = static_cast<int>(a.seeing_rows().size());
   figures.add("seeing_channels", "seeing channels", fmt::format("{} of {}", grouped(seeing), grouped(a.rows())),
               seeing);
   figures.add("entries", "response entries", grouped(a.stored_entries()), a.stored_entries());
   if (seeing == 0) return {};
+  if (progress) progress("operator", 0.0, 0.0);
+  if (auto added = add_operator_figures(a, board.object.rows, board.object.cols, op, figures); !added) return added;
   if (progress) progress("lambda by rule", 0.0, 0.0);
   const auto wanted = add_rules(board, a, figures);
   if (!wanted) return tl::unexpected(wanted.error());

@@ -10,6 +10,7 @@
 #include "calib/response_summary.hpp"
 #include "firmware/app/inspect/duplicate_rows.hpp"
 #include "firmware/app/inspect/largest_singular_value.hpp"
+#include "firmware/app/inspect/operator_lines.hpp"
 #include "firmware/app/report/number_text.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/mirror_symmetry.hpp"
@@ -90,8 +91,6 @@ Result<void> add_memory(const Response& a, PictureSize size, FigureList& figures
                        std::vector<float>(packed)};
   const auto made = recon::Reconstructor::create(a, size.rows, size.cols, objective, plan, std::move(factor));
   if (!made) return tl::unexpected(made.error());
-  figures.add("operator", "operator (how A is applied)", std::string(recon::name(made->operating_point().op)),
-              recon::name(made->operating_point().op));
   figures.add("rho_by_rule", "rho by rule", significant(made->plan().rho, 4), made->plan().rho);
   figures.add(
       "admm_memory", "memory of admm (f32)",
@@ -131,7 +130,9 @@ Result<void> add_response_figures(const Response& a, std::optional<PictureSize> 
   add_lambda_scales(a, figures);
   if (!size || summary.seeing_rows() == 0) return {};
   add_symmetry(a, *size, figures);
-  return add_memory(a, *size, figures);
+  return add_operator_figures(a, size->rows, size->cols, std::nullopt, figures).and_then([&] {
+    return add_memory(a, *size, figures);
+  });
 }
 
 }  // namespace compueye::firmware

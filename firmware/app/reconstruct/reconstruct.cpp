@@ -104,6 +104,7 @@ Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, con
 
 /// The solver knows of lambda and response, people of the options and files behind them.
 std::string place_of(const ReconstructOptions& o, const std::string& place) {
+  if (place == "operator") return "--operator";
   if (o.rank && place == "rank") return "--rank";
   if (o.rho && place == "rho") return "--rho";
   if (o.lambda && place == "lambda") return "--lambda";

@@ -29,6 +29,12 @@ Kind kind_named(std::span<const Named<Kind>> named, std::string_view name) {
   return named.front().kind;  // the option's check has let only these names through
 }
 
+std::vector<std::string_view> operator_words() {
+  std::vector<std::string_view> words = names_in(operator_names());
+  words.insert(words.begin(), "auto");
+  return words;
+}
+
 void add_files(CLI::App& command, ReconstructOptions& o) {
   command.add_option("--response", o.response, "measurement matrix A (M, N): .npy dense or .mtx sparse")
       ->required()
@@ -114,6 +120,12 @@ void add_plan(CLI::App& command, ReconstructOptions& o) {
   command.add_option("--precision", o.precision, "f32 (default) or f64")
       ->type_name("NAME")
       ->check(one_of({"f32", "f64"}, {}));
+  command
+      .add_option("--operator", o.op,
+                  "how A is applied: auto (default: the quickest that keeps every digit), dense, csr, running-sums, "
+                  "dense-runs, dense-runs-bf16 or dense-runs-int8, which round the response")
+      ->type_name("NAME")
+      ->check(one_of(operator_words(), {}));
   command.add_flag("--as-published", o.as_published,
                    "adm as YALL1 v1.4 does it, for comparison: it may stop where there is no solution");
   command.add_flag("--json", o.json, "print one object with every figure");
@@ -188,6 +200,7 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
   problem.objective.epsilon = o.epsilon;
   problem.plan.solver = kind_named(solver_names(), o.solver);
   if (o.as_published) problem.plan.solver = recon::SolverKind::adm_as_published;
+  if (o.op != "auto") problem.plan.op = kind_named(operator_names(), o.op);
   problem.plan.rank = o.rank.value_or(0);
   problem.plan.l1_reweighting = o.reweight.value_or(0.0);
   problem.plan.measure_gap = true;

@@ -51,6 +51,10 @@ TEST_CASE("inspect and reconstruct agree on the memory of admm") {
   CHECK(said["admm_memory"]["tables"] == used["table_bytes"]);
   CHECK(said["admm_memory"]["workspace"].get<int>() >= used["workspace_bytes"].get<int>());
   CHECK(said["rho_by_rule"] == used["rho"]);
+  CHECK(said["operator"] == used["operating_point"]["operator"]);
+  CHECK(said["operator_cost"]["bytes"].get<int>() > 0);
+  CHECK(said["operator_cost"]["bytes"].get<int>() < used["table_bytes"].get<int>());
+  CHECK(said["operator_cost"]["flops"].get<int>() > 0);
 }
 
 TEST_CASE("inspect tells the range of an array and its non-finite elements") {

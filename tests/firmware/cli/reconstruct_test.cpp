@@ -133,6 +133,25 @@ TEST_CASE("solvers that end by themselves say where: omp by its elements, tsvd b
                {"--rank", "65", "1 to 64"});
 }
 
+TEST_CASE("the operator is the one asked for, by rule the one that suits the response") {
+  const TemporaryFolder folder;
+  put_frames(folder, 1);
+  const std::string settings = std::string(small_eye) + "--sigma 0.002 --box 0,1 --iterations 300 ";
+  const auto by_rule = json_from(settings + "--json", folder.path());
+  CHECK(by_rule["operating_point"]["operator"] == "running sums, four rows at once");
+  for (const auto& [word, meaning] : {std::pair{"dense", "dense"},
+                                      {"csr", "csr"},
+                                      {"running-sums", "running sums, four rows at once"},
+                                      {"dense-runs", "dense runs"},
+                                      {"dense-runs-bf16", "dense runs in bf16"},
+                                      {"dense-runs-int8", "dense runs in int8"}}) {
+    const auto asked = json_from(settings + "--operator " + word + " --json", folder.path());
+    CHECK(asked["operating_point"]["operator"] == meaning);
+    CHECK(asked["median_objective"].get<double>() ==
+          doctest::Approx(by_rule["median_objective"].get<double>()).epsilon(0.05));
+  }
+}
+
 TEST_CASE("the report has every figure") {
   const TemporaryFolder folder;
   put_frames(folder, 2);
