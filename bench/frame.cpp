@@ -50,14 +50,8 @@ struct Operator {
   [[nodiscard]] const core::LinearOperator<float>& view() const { return tables.problem.a; }
   [[nodiscard]] float* scratch() const { return reinterpret_cast<float*>(memory->span().data()); }
 
-  /// Of one application: a multiplication and an addition an entry, or a tap in each of its lanes; an addition a pixel
-  /// for the running sums.
-  [[nodiscard]] double flops() const {
-    const double lanes = view().kind == recon::OperatorKind::running_sums_symmetric ? 4.0 : 1.0;
-    const double sums = tables.sums.element.empty() ? 0.0 : static_cast<double>(view().cols);
-    return 2.0 * (static_cast<double>(tables.values.size()) + lanes * static_cast<double>(tables.sums.element.size())) +
-           sums;
-  }
+  /// Multiplications and additions of one application.
+  [[nodiscard]] double flops() const { return 2.0 * static_cast<double>(core::flops(view())); }
 };
 
 std::vector<float> some_numbers(std::size_t count) {

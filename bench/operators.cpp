@@ -14,11 +14,12 @@
 #include "bench/eyes.hpp"
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
+#include "calib/plausible_response.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/app/report/table.hpp"
 #include "recon/core/linear_operator.hpp"
-#include "recon/core/vector_sums.hpp"
 #include "recon/problem_tables.hpp"
+#include "recon/quantised_response.hpp"
 #include "recon/running_sum_tables.hpp"
 
 using namespace compueye;
@@ -30,15 +31,16 @@ struct Timed {
   std::string name;
   double forward_us = 0.0;
   double adjoint_us = 0.0;
-  double table_bytes = 0.0;
-  double taps = 0.0;  ///< multiplications of one application, a vector of lanes counting once
+  double bytes = 0.0;  ///< of tables, read once an application
+  double flops = 0.0;  ///< multiply-adds of one application
+  double taps = 0.0;   ///< table entries of one application, each for one or more rows; 0: Eigen's own business
   bool baseline = false;
 };
 
 using Apply = std::function<void()>;
 
-Timed time(std::string name, const Apply& forward, const Apply& adjoint, double table_bytes, double taps) {
-  return {std::move(name), 1e3 * bench::median_ms(forward), 1e3 * bench::median_ms(adjoint), table_bytes, taps, false};
+Timed time(std::string name, const Apply& forward, const Apply& adjoint) {
+  return {std::move(name), 1e3 * bench::median_ms(forward), 1e3 * bench::median_ms(adjoint)};
 }
 
 std::vector<float> some_numbers(std::size_t count) {
@@ -57,76 +59,103 @@ struct Vectors {
   std::vector<float> x, y, x_out, y_out;
 };
 
-Timed time_eigen(const std::string& name, const bench::EigenBaseline& eigen, Vectors& v) {
+Timed time_eigen(const std::string& name, const bench::EigenBaseline& eigen, const recon::Response& a, Vectors& v) {
   Timed timed = time(
-      name, [&] { eigen.forward(v.x, v.y_out); }, [&] { eigen.adjoint(v.y, v.x_out); }, eigen.bytes(), 0.0);
+      name, [&] { eigen.forward(v.x, v.y_out); }, [&] { eigen.adjoint(v.y, v.x_out); });
+  timed.bytes = eigen.bytes();
+  timed.flops = static_cast<double>(a.nonzeros());
   timed.baseline = true;
   return timed;
 }
 
-Timed time_running_sums(const std::string& name, const recon::Response& a, const bench::Eye& eye,
-                        const recon::MirrorSymmetry& images, Vectors& v) {
-  const auto tables = recon::running_sum_tables<float>(a, eye.plane.rows, eye.plane.cols, images);
-  const bench::Workspace memory(tables->view.scratch_size() * sizeof(float));
+/// Table entries that a vector of rows shares count once.
+double taps_of(const recon::OwnedTables<float>& tables) {
+  const std::size_t sums = tables.sums.element.size(), runs = core::flops(tables.problem.a);
+  return static_cast<double>(sums > 0 ? sums : runs);
+}
+
+Timed time_ours(const std::string& name, const recon::OwnedTables<float>& tables, Vectors& v) {
+  const core::LinearOperator<float>& op = tables.problem.a;
+  const bench::Workspace memory(op.scratch_size() * sizeof(float) + 64);
   auto* scratch = reinterpret_cast<float*>(memory.span().data());
-  return time(
-      name, [&] { core::forward(tables->view, v.x.data(), v.y_out.data(), scratch); },
+  Timed timed = time(
+      name, [&] { core::forward(op, v.x.data(), v.y_out.data(), scratch); },
       [&] {
         std::fill(v.x_out.begin(), v.x_out.end(), 0.0F);
-        core::adjoint_accumulate(tables->view, v.y.data(), v.x_out.data(), scratch);
-      },
-      static_cast<double>(tables->bytes()), static_cast<double>(tables->element.size()));
+        core::adjoint_accumulate(op, v.y.data(), v.x_out.data(), scratch);
+      });
+  timed.bytes = static_cast<double>(core::bytes(op));
+  timed.flops = static_cast<double>(core::flops(op));
+  timed.taps = taps_of(tables);
+  return timed;
 }
 
-/// Our plain forms, which serve as references.
-Timed time_plain(const std::string& name, const recon::Response& a, recon::OperatorKind kind, Vectors& v) {
-  std::vector<float> values;
-  std::vector<std::uint32_t> row_start{0};
-  std::vector<std::int32_t> columns;
-  const auto cols = static_cast<std::size_t>(a.cols());
-  for (int m = 0; m < a.rows(); ++m) {
-    if (kind == recon::OperatorKind::dense) values.resize(values.size() + cols, 0.0F);
-    a.for_each_in_row(m, [&](std::int32_t n, double entry) {
-      if (kind == recon::OperatorKind::dense) {
-        values[static_cast<std::size_t>(m) * cols + static_cast<std::size_t>(n)] = static_cast<float>(entry);
-      } else {
-        values.push_back(static_cast<float>(entry));
-        columns.push_back(n);
-      }
-    });
-    row_start.push_back(static_cast<std::uint32_t>(values.size()));
+hal::Result<Timed> time_kind(const std::string& name, const recon::Response& a, const bench::Eye& eye,
+                             recon::OperatorKind kind, Vectors& v) {
+  recon::OwnedTables<float> tables;
+  const recon::Response applied = recon::quantised(a, kind);
+  return recon::fill_operator(applied, eye.plane.rows, eye.plane.cols, kind, tables).map([&] {
+    return time_ours(name, tables, v);
+  });
+}
+
+/// Running sums with fewer rows at once than the response would let them have.
+Timed time_running_sums(const std::string& name, const recon::Response& a, const bench::Eye& eye,
+                        const recon::MirrorSymmetry& images, const std::vector<std::int32_t>& transposed, Vectors& v) {
+  recon::OwnedTables<float> tables;
+  tables.sums = *recon::running_sum_tables<float>(a, eye.plane.rows, eye.plane.cols, images, transposed);
+  core::LinearOperator<float>& op = tables.problem.a;
+  op.kind = recon::OperatorKind::running_sums;
+  op.rows = static_cast<std::size_t>(a.rows());
+  op.cols = static_cast<std::size_t>(a.cols());
+  op.sums = tables.sums.view;
+  return time_ours(name, tables, v);
+}
+
+hal::Result<std::vector<Timed>> measure_plain(const recon::Response& a, const bench::Eye& eye, Vectors& v) {
+  std::vector<Timed> all;
+  all.push_back(time_eigen("Eigen CSR", *bench::eigen_plain(a, bench::EigenStorage::csr), a, v));
+  all.push_back(time_eigen("Eigen CSR, fast-math", *bench::eigen_fast_math(a, bench::EigenStorage::csr), a, v));
+  std::vector<std::pair<std::string, recon::OperatorKind>> kinds{{"CSR", recon::OperatorKind::csr}};
+  if (a.rows() < 1000) {
+    all.push_back(time_eigen("Eigen dense", *bench::eigen_plain(a, bench::EigenStorage::dense), a, v));
+    all.push_back(time_eigen("Eigen dense, fast-math", *bench::eigen_fast_math(a, bench::EigenStorage::dense), a, v));
+    kinds.emplace_back("dense", recon::OperatorKind::dense);
   }
-  const core::LinearOperator<float> op{
-      kind, static_cast<std::size_t>(a.rows()), cols, values.data(), row_start.data(), columns.data(), {}};
-  return time(
-      name, [&] { core::forward(op, v.x.data(), v.y_out.data(), nullptr); },
-      [&] {
-        std::fill(v.x_out.begin(), v.x_out.end(), 0.0F);
-        core::adjoint_accumulate(op, v.y.data(), v.x_out.data(), nullptr);
-      },
-      4.0 * static_cast<double>(values.size() + columns.size()), static_cast<double>(values.size()));
+  kinds.emplace_back("dense runs", recon::OperatorKind::dense_runs);
+  kinds.emplace_back("dense runs, bf16", recon::OperatorKind::dense_runs_bf16);
+  kinds.emplace_back("dense runs, int8", recon::OperatorKind::dense_runs_int8);
+  for (const auto& [name, kind] : kinds) {
+    auto timed = time_kind(name, a, eye, kind, v);
+    if (!timed) return tl::unexpected(std::move(timed.error()));
+    all.push_back(std::move(*timed));
+  }
+  return all;
 }
 
-hal::Result<std::vector<Timed>> measure(const bench::Eye& eye) {
+hal::Result<std::vector<Timed>> measure_nominal(const bench::Eye& eye) {
   const auto response = calib::nominal_response(eye.geometry, eye.plane);
   if (!response) return tl::unexpected(response.error());
   const recon::Response a = response->select_rows(response->seeing_rows());
   Vectors v(a);
-  std::vector<Timed> all;
-  all.push_back(time_eigen("Eigen CSR", *bench::eigen_plain(a, bench::EigenStorage::csr), v));
-  all.push_back(time_eigen("Eigen CSR, fast-math", *bench::eigen_fast_math(a, bench::EigenStorage::csr), v));
-  const bool small = a.rows() < 1000;
-  if (small) {
-    all.push_back(time_eigen("Eigen dense", *bench::eigen_plain(a, bench::EigenStorage::dense), v));
-    all.push_back(time_eigen("Eigen dense, fast-math", *bench::eigen_fast_math(a, bench::EigenStorage::dense), v));
-    all.push_back(time_plain("dense", a, recon::OperatorKind::dense, v));
-  }
-  all.push_back(time_plain("CSR", a, recon::OperatorKind::csr, v));
+  auto all = measure_plain(a, eye, v);
+  if (!all) return all;
   const recon::MirrorSymmetry images = recon::find_mirror_symmetry(a, eye.plane.rows, eye.plane.cols);
   const recon::MirrorSymmetry none{{images.permutations.front()}, {{1}}};
-  all.push_back(time_running_sums("running sums, no symmetry", a, eye, none, v));
-  all.push_back(time_running_sums("running sums, four rows at once", a, eye, images, v));
+  const auto transposed = recon::find_diagonal_symmetry(a, eye.plane.rows, eye.plane.cols);
+  all->push_back(time_running_sums("running sums, no symmetry", a, eye, none, {}, v));
+  all->push_back(time_running_sums("running sums, four rows at once", a, eye, images, {}, v));
+  all->push_back(time_running_sums("running sums, eight rows at once", a, eye, images, transposed, v));
   return all;
+}
+
+/// Rows as a calibration might find them.
+hal::Result<std::vector<Timed>> measure_measured(const bench::Eye& eye) {
+  const auto response = calib::plausible_response(eye.geometry, eye.plane, {}, 1);
+  if (!response) return tl::unexpected(response.error());
+  const recon::Response a = response->select_rows(response->seeing_rows());
+  Vectors v(a);
+  return measure_plain(a, eye, v);
 }
 
 double best(const std::vector<Timed>& all, double Timed::*figure, bool fast_math) {
@@ -143,66 +172,82 @@ std::string ratios(const std::vector<Timed>& all, const Timed& timed, bool fast_
                      best(all, &Timed::adjoint_us, fast_math) / timed.adjoint_us);
 }
 
-std::string table_text(const bench::Eye& eye, const std::vector<Timed>& all) {
-  firmware::Table table({{std::string(eye.name), firmware::Align::left},
+/// Share of the memory bandwidth that reading the tables once takes, were they in no cache.
+std::string share(double bytes, double us, double bandwidth) {
+  return fmt::format("{:.0f} %", 100.0 * bytes / us * 1e-3 / bandwidth);
+}
+
+/// Every representation of an eye.
+struct MeasuredEye {
+  std::string name;
+  std::vector<Timed> timed;
+};
+
+struct Measured {
+  double bandwidth = 0.0;
+  std::vector<MeasuredEye> eyes;
+};
+
+std::string table_text(const MeasuredEye& eye, double bandwidth) {
+  firmware::Table table({{eye.name, firmware::Align::left},
                          {"A us"},
                          {"A' us"},
                          {"tables kB"},
+                         {"k multiply-adds"},
                          {"ns a tap"},
-                         {"GB/s"},
+                         {"of bandwidth"},
                          {"faster than Eigen (A / A')"},
                          {"than Eigen with fast-math"}});
-  for (const Timed& t : all) {
+  for (const Timed& t : eye.timed) {
     table.add(
         {t.name, fmt::format("{:.2f}", t.forward_us), fmt::format("{:.2f}", t.adjoint_us),
-         fmt::format("{:.0f}", t.table_bytes * 1e-3),
+         fmt::format("{:.0f}", t.bytes * 1e-3), fmt::format("{:.0f}", t.flops * 1e-3),
          t.taps > 0.0 ? fmt::format("{:.2f} / {:.2f}", 1e3 * t.forward_us / t.taps, 1e3 * t.adjoint_us / t.taps) : "",
-         fmt::format("{:.1f} / {:.1f}", t.table_bytes / t.forward_us * 1e-3, t.table_bytes / t.adjoint_us * 1e-3),
-         ratios(all, t, false), ratios(all, t, true)});
+         share(t.bytes, t.forward_us, bandwidth) + " / " + share(t.bytes, t.adjoint_us, bandwidth),
+         ratios(eye.timed, t, false), ratios(eye.timed, t, true)});
   }
   return table.text() + "\n";
 }
 
-firmware::Json json_of(const bench::Eye& eye, const std::vector<Timed>& all) {
+firmware::Json json_of(const MeasuredEye& eye, double bandwidth) {
   firmware::Json json;
   json["eye"] = eye.name;
-  for (const Timed& t : all) {
+  for (const Timed& t : eye.timed) {
     json["representations"].push_back({{"name", t.name},
                                        {"forward_us", t.forward_us},
                                        {"adjoint_us", t.adjoint_us},
-                                       {"table_bytes", t.table_bytes},
+                                       {"table_bytes", t.bytes},
+                                       {"multiply_adds", t.flops},
                                        {"taps", t.taps},
+                                       {"forward_share_of_bandwidth", t.bytes / t.forward_us * 1e-3 / bandwidth},
+                                       {"adjoint_share_of_bandwidth", t.bytes / t.adjoint_us * 1e-3 / bandwidth},
                                        {"baseline", t.baseline}});
   }
   return json;
 }
 
-/// Every representation of both eyes.
-struct Measured {
-  double bandwidth = 0.0;
-  std::vector<std::pair<bench::Eye, std::vector<Timed>>> eyes;
-};
-
 hal::Result<Measured> measure_all() {
   Measured measured{bench::read_bandwidth(), {}};
   for (const bench::Eye& eye : {bench::eye_8x8(), bench::eye_80x80()}) {
-    auto timed = measure(eye);
-    if (!timed) return tl::unexpected(std::move(timed.error()));
-    measured.eyes.emplace_back(eye, std::move(*timed));
+    for (const bool nominal : {true, false}) {
+      auto timed = nominal ? measure_nominal(eye) : measure_measured(eye);
+      if (!timed) return tl::unexpected(std::move(timed.error()));
+      measured.eyes.push_back({std::string(eye.name) + (nominal ? "" : ", measured rows"), std::move(*timed)});
+    }
   }
   return measured;
 }
 
 std::string whole_text(const Measured& measured) {
   std::string text = fmt::format("one core reads memory at {:.2f} GB/s\n\n", measured.bandwidth);
-  for (const auto& [eye, timed] : measured.eyes) text += table_text(eye, timed);
+  for (const MeasuredEye& eye : measured.eyes) text += table_text(eye, measured.bandwidth);
   return text;
 }
 
 std::string whole_json(const Measured& measured) {
   firmware::Json json;
   json["read_bandwidth_gigabytes_per_second"] = measured.bandwidth;
-  for (const auto& [eye, timed] : measured.eyes) json["eyes"].push_back(json_of(eye, timed));
+  for (const MeasuredEye& eye : measured.eyes) json["eyes"].push_back(json_of(eye, measured.bandwidth));
   return firmware::json_text(json);
 }
 

@@ -16,6 +16,7 @@ using CentroidKey = std::pair<std::int64_t, std::int64_t>;
 struct Flip {
   bool left_right = false;
   bool up_down = false;
+  bool transposed = false;
 };
 
 /// Finds, for every row, the row that is its mirror image: candidates by the centroid of their receptive fields, then
@@ -67,6 +68,7 @@ class MirrorSearch {
 
   [[nodiscard]] std::int32_t flipped(std::int32_t n, Flip flip) const {
     const std::int32_t row = n / image_cols_, col = n % image_cols_;
+    if (flip.transposed) return col * image_cols_ + row;
     return (flip.up_down ? image_rows_ - 1 - row : row) * image_cols_ + (flip.left_right ? image_cols_ - 1 - col : col);
   }
 
@@ -74,6 +76,7 @@ class MirrorSearch {
     Point p = centroid(m);
     if (flip.up_down) p.row = image_rows_ - 1 - p.row;
     if (flip.left_right) p.col = image_cols_ - 1 - p.col;
+    if (flip.transposed) std::swap(p.row, p.col);
     const CentroidKey at = key(p);
     response_.for_each_in_row(
         m, [&](std::int32_t n, double v) { mirrored_[static_cast<std::size_t>(flipped(n, flip))] = v; });
@@ -118,8 +121,8 @@ MirrorSymmetry find_mirror_symmetry(const Response& response, int image_rows, in
   std::iota(identity.begin(), identity.end(), 0);
   MirrorSymmetry symmetry{{identity}, {{1}}};
   MirrorSearch search(response, image_rows, image_cols);
-  const auto left_right = search.find({.left_right = true, .up_down = false});
-  const auto up_down = search.find({.left_right = false, .up_down = true});
+  const auto left_right = search.find({.left_right = true});
+  const auto up_down = search.find({.up_down = true});
   if (left_right) {
     symmetry.permutations.push_back(*left_right);
     symmetry.characters = {{1, 1}, {1, -1}};
@@ -135,6 +138,11 @@ MirrorSymmetry find_mirror_symmetry(const Response& response, int image_rows, in
     symmetry.characters = {{1, 1, 1, 1}, {1, -1, 1, -1}, {1, 1, -1, -1}, {1, -1, -1, 1}};
   }
   return symmetry;
+}
+
+std::vector<std::int32_t> find_diagonal_symmetry(const Response& response, int image_rows, int image_cols) {
+  if (image_rows != image_cols) return {};
+  return MirrorSearch(response, image_rows, image_cols).find({.transposed = true}).value_or(Permutation{});
 }
 
 }  // namespace compueye::recon

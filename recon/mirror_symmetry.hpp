@@ -22,4 +22,9 @@ struct MirrorSymmetry {
 /// 1e-11 of the largest.
 [[nodiscard]] MirrorSymmetry find_mirror_symmetry(const Response& response, int image_rows, int image_cols);
 
+/// Looks for symmetry about the diagonal of a square picture: the row that is the transposed image of each row, its own
+/// inverse; empty where there is none. Entries may differ as above.
+[[nodiscard]] std::vector<std::int32_t> find_diagonal_symmetry(const Response& response, int image_rows,
+                                                               int image_cols);
+
 }  // namespace compueye::recon

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "hal/result.hpp"
 #include "recon/core/frame_info.hpp"
@@ -13,6 +15,7 @@ namespace compueye::recon {
 struct OperatorChoice {
   OperatorKind kind = OperatorKind::csr;
   MirrorSymmetry images;
+  std::vector<std::int32_t> transposed;  ///< of find_diagonal_symmetry()
 };
 
 /// The quickest form for a response, by the number of entries, differences and run values: running sums where rows are

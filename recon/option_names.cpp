@@ -82,6 +82,8 @@ std::string_view name(OperatorKind kind) noexcept {
       return "running sums";
     case OperatorKind::running_sums_symmetric:
       return "running sums, four rows at once";
+    case OperatorKind::running_sums_diagonal:
+      return "running sums, eight rows at once";
     case OperatorKind::dense_runs:
       return "dense runs";
     case OperatorKind::dense_runs_bf16:

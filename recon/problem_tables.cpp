@@ -91,7 +91,8 @@ hal::Result<void> fill_operator(const Response& seeing, int image_rows, int imag
   switch (a.kind) {
     case OperatorKind::running_sums:
     case OperatorKind::running_sums_symmetric:
-      tables.sums = running_sum_tables<T>(seeing, image_rows, image_cols, chosen->images).value();
+    case OperatorKind::running_sums_diagonal:
+      tables.sums = running_sum_tables<T>(seeing, image_rows, image_cols, chosen->images, chosen->transposed).value();
       a.sums = tables.sums.view;
       return {};
     case OperatorKind::dense_runs:

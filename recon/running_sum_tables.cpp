@@ -9,9 +9,9 @@ namespace compueye::recon {
 namespace {
 
 /// One row of A, folded: visits its taps lane by lane, elements ascending.
-class FoldedRow {
+class SpreadRow {
  public:
-  FoldedRow(const Response& response, int image_rows, int image_cols, double negligible_share)
+  SpreadRow(const Response& response, int image_rows, int image_cols, double negligible_share)
       : response_(response),
         rows_(image_rows),
         cols_(image_cols),
@@ -57,25 +57,65 @@ class FoldedRow {
   double negligible_ = 0.0;
 };
 
-/// First rows of the orbits, and the row in each lane: the image under a flip left-right, up-down and both.
+/// First rows of the orbits, and the row in each lane: the image under a flip left-right, up-down and both, then the
+/// transposed images of those.
 struct Orbits {
   std::vector<std::int32_t> first;
   std::vector<std::int32_t> row;
 };
 
-Orbits orbits_of(int rows, const MirrorSymmetry& symmetry) {
+Orbits orbits_of(int rows, const MirrorSymmetry& symmetry, const std::vector<std::int32_t>& transposed, bool eight) {
   Orbits orbits;
   std::vector<bool> placed(static_cast<std::size_t>(rows), false);
+  const auto place = [&](std::int32_t image) {
+    orbits.row.push_back(placed[static_cast<std::size_t>(image)] ? -1 : image);
+    placed[static_cast<std::size_t>(image)] = true;
+  };
   for (std::int32_t m = 0; m < rows; ++m) {
     if (placed[static_cast<std::size_t>(m)]) continue;
     orbits.first.push_back(m);
+    for (const auto& permutation : symmetry.permutations) place(permutation[static_cast<std::size_t>(m)]);
     for (const auto& permutation : symmetry.permutations) {
-      const std::int32_t image = permutation[static_cast<std::size_t>(m)];
-      orbits.row.push_back(placed[static_cast<std::size_t>(image)] ? -1 : image);
-      placed[static_cast<std::size_t>(image)] = true;
+      if (eight) place(transposed[static_cast<std::size_t>(permutation[static_cast<std::size_t>(m)])]);
     }
   }
   return orbits;
+}
+
+/// Bands of folded rows with about as many taps each: twelve where the picture is large, as many as two, three or four
+/// workers can share evenly.
+std::vector<std::uint32_t> band_rows(const std::vector<std::uint16_t>& elements, int half_rows, int half_cols) {
+  constexpr std::size_t many = 12, worth_it = 96 * 96 / 4;
+  const std::size_t bands = half_rows * half_cols >= static_cast<int>(worth_it) && half_rows >= static_cast<int>(many)
+                                ? many
+                                : std::size_t{1};
+  std::vector<std::size_t> taps(static_cast<std::size_t>(half_rows), 0);
+  for (const std::uint16_t element : elements) ++taps[element / static_cast<std::size_t>(half_cols)];
+  std::vector<std::uint32_t> begins{0};
+  std::size_t sum = 0;
+  for (std::size_t r = 0; r < taps.size() && begins.size() < bands; ++r) {
+    sum += taps[r];
+    if (sum * bands >= begins.size() * elements.size()) begins.push_back(static_cast<std::uint32_t>(r + 1));
+  }
+  while (begins.size() <= bands) begins.push_back(static_cast<std::uint32_t>(half_rows));
+  return begins;
+}
+
+/// Where every lane of every table begins, refined by bands; `ends` are those of the lanes.
+std::vector<std::uint32_t> banded(const std::vector<std::uint32_t>& lane_first,
+                                  const std::vector<std::uint16_t>& elements,
+                                  const std::vector<std::uint32_t>& band_row, int half_cols) {
+  std::vector<std::uint32_t> first;
+  for (std::size_t lane = 0; lane + 1 < lane_first.size(); ++lane) {
+    std::uint32_t k = lane_first[lane];
+    for (std::size_t band = 0; band + 1 < band_row.size(); ++band) {
+      const auto begin = band_row[band] * static_cast<std::uint32_t>(half_cols);
+      while (k < lane_first[lane + 1] && elements[k] < begin) ++k;
+      first.push_back(k);
+    }
+  }
+  first.push_back(lane_first.back());
+  return first;
 }
 
 }  // namespace
@@ -85,52 +125,66 @@ bool running_sums_fit(int image_rows, int image_cols) noexcept {
   return half_rows * half_cols <= 65536;
 }
 
+int rows_sharing_tables(int image_rows, int image_cols, const MirrorSymmetry& symmetry,
+                        const std::vector<std::int32_t>& transposed) noexcept {
+  if (symmetry.order() != 4 || image_rows % 2 != 0 || image_cols % 2 != 0) return 1;
+  return image_rows == image_cols && !transposed.empty() ? 8 : 4;
+}
+
 template <class T>
 std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, int image_rows, int image_cols,
-                                                      const MirrorSymmetry& symmetry) {
+                                                      const MirrorSymmetry& symmetry,
+                                                      const std::vector<std::int32_t>& transposed) {
   if (!running_sums_fit(image_rows, image_cols)) return std::nullopt;
+  const int half_rows = (image_rows + 1) / 2, half_cols = (image_cols + 1) / 2;
+  const int at_once = rows_sharing_tables(image_rows, image_cols, symmetry, transposed);
   RunningSumTables<T> tables;
-  const bool symmetric = symmetry.order() == 4 && image_rows % 2 == 0 && image_cols % 2 == 0;
   std::vector<std::int32_t> firsts;
-  if (symmetric) {
-    Orbits orbits = orbits_of(seeing.rows(), symmetry);
+  if (at_once > 1) {
+    Orbits orbits = orbits_of(seeing.rows(), symmetry, transposed, at_once == 8);
     firsts = std::move(orbits.first);
     tables.row = std::move(orbits.row);
   } else {
     for (std::int32_t m = 0; m < seeing.rows(); ++m) firsts.push_back(m);
   }
-  FoldedRow folded(seeing, image_rows, image_cols, 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon()));
-  tables.first.push_back(0);
+  SpreadRow spread(seeing, image_rows, image_cols, 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon()));
+  std::vector<std::uint32_t> lane_first{0};
   for (const std::int32_t m : firsts) {
     for (std::size_t lane = 0; lane < 4; ++lane) {
-      folded.for_each_tap(m, lane, [&](int element, double difference) {
+      spread.for_each_tap(m, lane, [&](int element, double difference) {
         tables.element.push_back(static_cast<std::uint16_t>(element));
         tables.difference.push_back(static_cast<T>(difference));
       });
-      tables.first.push_back(static_cast<std::uint32_t>(tables.element.size()));
+      lane_first.push_back(static_cast<std::uint32_t>(tables.element.size()));
     }
   }
-  tables.view = {symmetric,
+  tables.band_row = band_rows(tables.element, half_rows, half_cols);
+  tables.first = banded(lane_first, tables.element, tables.band_row, half_cols);
+  tables.view = {static_cast<std::size_t>(at_once),
                  static_cast<std::size_t>(image_rows),
                  static_cast<std::size_t>(image_cols),
                  firsts.size(),
+                 tables.band_row.size() - 1,
                  tables.first.data(),
                  tables.element.data(),
                  tables.difference.data(),
-                 tables.row.data()};
+                 tables.row.data(),
+                 tables.band_row.data()};
   return tables;
 }
 
 std::int64_t running_sum_taps(const Response& seeing, int image_rows, int image_cols) {
-  FoldedRow folded(seeing, image_rows, image_cols, 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon()));
+  SpreadRow spread(seeing, image_rows, image_cols, 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon()));
   std::int64_t taps = 0;
   for (int m = 0; m < seeing.rows(); ++m) {
-    for (std::size_t lane = 0; lane < 4; ++lane) folded.for_each_tap(m, lane, [&](int, double) { ++taps; });
+    for (std::size_t lane = 0; lane < 4; ++lane) spread.for_each_tap(m, lane, [&](int, double) { ++taps; });
   }
   return taps;
 }
 
-template std::optional<RunningSumTables<float>> running_sum_tables(const Response&, int, int, const MirrorSymmetry&);
-template std::optional<RunningSumTables<double>> running_sum_tables(const Response&, int, int, const MirrorSymmetry&);
+template std::optional<RunningSumTables<float>> running_sum_tables(const Response&, int, int, const MirrorSymmetry&,
+                                                                   const std::vector<std::int32_t>&);
+template std::optional<RunningSumTables<double>> running_sum_tables(const Response&, int, int, const MirrorSymmetry&,
+                                                                    const std::vector<std::int32_t>&);
 
 }  // namespace compueye::recon

@@ -9,6 +9,7 @@ enum class OperatorKind : std::uint8_t {
   csr,
   running_sums,
   running_sums_symmetric,
+  running_sums_diagonal,
   dense_runs,
   dense_runs_bf16,
   dense_runs_int8

@@ -72,6 +72,7 @@ void forward_of(const LinearOperator<T>& a, const T* x, T* y, T* scratch) noexce
   switch (a.kind) {
     case OperatorKind::running_sums:
     case OperatorKind::running_sums_symmetric:
+    case OperatorKind::running_sums_diagonal:
       return forward(a.sums, x, y, scratch);
     case OperatorKind::csr:
       return csr_forward_clone(a, x, y);
@@ -90,6 +91,7 @@ void adjoint_of(const LinearOperator<T>& a, const T* y, T* x, T* scratch) noexce
   switch (a.kind) {
     case OperatorKind::running_sums:
     case OperatorKind::running_sums_symmetric:
+    case OperatorKind::running_sums_diagonal:
       return adjoint_accumulate(a.sums, y, x, scratch);
     case OperatorKind::csr:
       return csr_adjoint(a, y, x);
@@ -110,6 +112,7 @@ std::size_t bytes_of(const LinearOperator<T>& a) noexcept {
   switch (a.kind) {
     case OperatorKind::running_sums:
     case OperatorKind::running_sums_symmetric:
+    case OperatorKind::running_sums_diagonal:
       return bytes(a.sums);
     case OperatorKind::dense_runs:
     case OperatorKind::dense_runs_bf16:
@@ -128,6 +131,7 @@ std::size_t flops_of(const LinearOperator<T>& a) noexcept {
   switch (a.kind) {
     case OperatorKind::running_sums:
     case OperatorKind::running_sums_symmetric:
+    case OperatorKind::running_sums_diagonal:
       return flops(a.sums);
     case OperatorKind::dense_runs:
     case OperatorKind::dense_runs_bf16:

@@ -1,93 +1,85 @@
 #include "recon/core/running_sums.hpp"
 
+#include "recon/core/folded_picture.hpp"
 #include "recon/core/multiversion.hpp"
 
 namespace compueye::recon::core {
 namespace {
 
-template <class T>
-struct FourLanes;
-template <>
-struct FourLanes<float> {
-  using type = float __attribute__((vector_size(16)));
+template <class T, std::size_t lane_count>
+struct LaneVector {
+  using type = Four<T>;
 };
 template <>
-struct FourLanes<double> {
-  using type = double __attribute__((vector_size(32)));
+struct LaneVector<float, 8> {
+  using type = float __attribute__((vector_size(32)));
 };
-template <class T>
-using Four = typename FourLanes<T>::type;
+template <>
+struct LaneVector<double, 8> {
+  using type = double __attribute__((vector_size(64)));
+};
+template <class T, std::size_t lane_count>
+using Lanes = typename LaneVector<T, lane_count>::type;
 
-/// Lane l of the result is lane l ^ flip of v.
-template <std::size_t flip, class V>
-COMPUEYE_INLINE V flipped(V v) {
-  if constexpr (flip == 0) return v;
-  if constexpr (flip == 1) return __builtin_shufflevector(v, v, 1, 0, 3, 2);
-  if constexpr (flip == 2) return __builtin_shufflevector(v, v, 2, 3, 0, 1);
-  if constexpr (flip == 3) return __builtin_shufflevector(v, v, 3, 2, 1, 0);
+/// Lane l of the result is lane l ^ flip of v, in every four lanes.
+template <std::size_t flip, class T>
+COMPUEYE_INLINE void flip_four(T* v) {
+  if constexpr (flip == 0) return;
+  Four<T> four;
+  __builtin_memcpy(&four, v, sizeof(four));
+  if constexpr (flip == 1) four = __builtin_shufflevector(four, four, 1, 0, 3, 2);
+  if constexpr (flip == 2) four = __builtin_shufflevector(four, four, 2, 3, 0, 1);
+  if constexpr (flip == 3) four = __builtin_shufflevector(four, four, 3, 2, 1, 0);
+  __builtin_memcpy(v, &four, sizeof(four));
 }
 
-/// Where the four pixels of element (r, c) stand in the picture, or -1: an odd picture's centre row and column belong
-/// to the lower and the right half.
-struct Fold {
-  template <class T>
-  explicit Fold(const RunningSums<T>& a)
-      : above(static_cast<std::ptrdiff_t>(a.image_rows / 2)),
-        left(static_cast<std::ptrdiff_t>(a.image_cols / 2)),
-        rows(static_cast<std::ptrdiff_t>(a.image_rows)),
-        cols(static_cast<std::ptrdiff_t>(a.image_cols)) {}
-  std::ptrdiff_t above, left, rows, cols;
-};
+template <std::size_t flip, class T, std::size_t lane_count>
+COMPUEYE_INLINE Lanes<T, lane_count> flipped(Lanes<T, lane_count> v) {
+  T lanes[lane_count];
+  __builtin_memcpy(lanes, &v, sizeof(v));
+  for (std::size_t l = 0; l < lane_count; l += 4) flip_four<flip>(lanes + l);
+  __builtin_memcpy(&v, lanes, sizeof(v));
+  return v;
+}
 
-template <class T>
-COMPUEYE_INLINE void sum_outward(const RunningSums<T>& a, const T* __restrict x, Four<T>* __restrict sums) {
-  const Fold fold(a);
-  const auto half_rows = static_cast<std::ptrdiff_t>(a.half_rows()),
-             half_cols = static_cast<std::ptrdiff_t>(a.half_cols());
-  for (std::ptrdiff_t r = 0; r < half_rows; ++r) {
-    const bool has_upper = r < fold.above, has_lower = fold.above + r < fold.rows;
-    const T* upper = x + (fold.above - 1 - r) * fold.cols;
-    const T* lower = x + (fold.above + r) * fold.cols;
-    Four<T> sum = {};
-    for (std::ptrdiff_t c = 0; c < half_cols; ++c) {
-      const bool has_left = c < fold.left, has_right = fold.left + c < fold.cols;
-      const std::ptrdiff_t at_left = fold.left - 1 - c, at_right = fold.left + c;
-      const Four<T> pixels = {
-          has_upper && has_left ? upper[at_left] : T(0), has_upper && has_right ? upper[at_right] : T(0),
-          has_lower && has_left ? lower[at_left] : T(0), has_lower && has_right ? lower[at_right] : T(0)};
-      sum += pixels;
-      sums[r * half_cols + c] = sum;
+template <std::size_t lane_count, class T>
+COMPUEYE_INLINE void sum_outward(const RunningSums<T>& a, const T* x, T* sums, std::size_t begin, std::size_t end) {
+  const Fold fold(a.image_rows, a.image_cols);
+  for (std::size_t r = begin; r < end; ++r) {
+    const auto row = static_cast<std::ptrdiff_t>(r);
+    T* to = sums + lane_count * r * a.half_cols();
+    sum_row_outward<lane_count>(FoldedRow::of(fold, row), fold.half_cols, x, to);
+    if constexpr (lane_count == 8) {
+      sum_row_outward<lane_count>(FoldedRow::of_transposed(fold, row), fold.half_cols, x, to + 4);
     }
   }
 }
 
+template <std::size_t lane_count, class T>
+COMPUEYE_INLINE void sum_inward(const RunningSums<T>& a, const T* sums, T* x, std::size_t begin, std::size_t end) {
+  const Fold fold(a.image_rows, a.image_cols);
+  for (std::size_t r = begin; r < end; ++r) {
+    sum_row_inward<lane_count>(FoldedRow::of(fold, static_cast<std::ptrdiff_t>(r)), fold.half_cols,
+                               sums + lane_count * r * a.half_cols(), x);
+  }
+}
+
 template <class T>
-COMPUEYE_INLINE void sum_inward(const RunningSums<T>& a, const Four<T>* __restrict sums, T* __restrict x) {
-  const Fold fold(a);
-  const auto half_rows = static_cast<std::ptrdiff_t>(a.half_rows()),
-             half_cols = static_cast<std::ptrdiff_t>(a.half_cols());
-  for (std::ptrdiff_t r = 0; r < half_rows; ++r) {
-    const bool has_upper = r < fold.above, has_lower = fold.above + r < fold.rows;
-    T* upper = x + (fold.above - 1 - r) * fold.cols;
-    T* lower = x + (fold.above + r) * fold.cols;
-    Four<T> sum = {};
-    for (std::ptrdiff_t c = half_cols; c-- > 0;) {
-      const bool has_left = c < fold.left, has_right = fold.left + c < fold.cols;
-      const std::ptrdiff_t at_left = fold.left - 1 - c, at_right = fold.left + c;
-      sum += sums[r * half_cols + c];
-      if (has_upper && has_left) upper[at_left] += sum[0];
-      if (has_upper && has_right) upper[at_right] += sum[1];
-      if (has_lower && has_left) lower[at_left] += sum[2];
-      if (has_lower && has_right) lower[at_right] += sum[3];
-    }
+COMPUEYE_INLINE void sum_inward_transposed(const RunningSums<T>& a, const T* sums, T* x, std::size_t begin,
+                                           std::size_t end) {
+  const Fold fold(a.image_rows, a.image_cols);
+  for (std::size_t r = begin; r < end; ++r) {
+    sum_row_inward<8>(FoldedRow::of_transposed(fold, static_cast<std::ptrdiff_t>(r)), fold.half_cols,
+                      sums + 8 * r * a.half_cols() + 4, x);
   }
 }
 
 /// Sum of difference times running sum over taps begin .. end-1. Four partial sums, so that one addition need not wait
 /// for the one before.
-template <class T>
-COMPUEYE_INLINE Four<T> taps_of_four(const RunningSums<T>& a, const Four<T>* sums, std::size_t begin, std::size_t end) {
-  Four<T> part[4] = {};
+template <std::size_t lane_count, class T>
+COMPUEYE_INLINE Lanes<T, lane_count> taps_of(const RunningSums<T>& a, const Lanes<T, lane_count>* sums,
+                                             std::size_t begin, std::size_t end) {
+  Lanes<T, lane_count> part[4] = {};
   std::size_t k = begin;
   for (; k + 4 <= end; k += 4) {
     for (std::size_t p = 0; p < 4; ++p) part[p] += a.difference[k + p] * sums[a.element[k + p]];
@@ -96,31 +88,39 @@ COMPUEYE_INLINE Four<T> taps_of_four(const RunningSums<T>& a, const Four<T>* sum
   return (part[0] + part[1]) + (part[2] + part[3]);
 }
 
-template <class T>
-COMPUEYE_INLINE void forward_symmetric(const RunningSums<T>& a, const Four<T>* sums, T* y) {
-  for (std::size_t t = 0; t < a.tables; ++t) {
-    const std::uint32_t* first = a.first + 4 * t;
-    Four<T> rows = taps_of_four(a, sums, first[0], first[1]);
-    rows += flipped<1>(taps_of_four(a, sums, first[1], first[2]));
-    rows += flipped<2>(taps_of_four(a, sums, first[2], first[3]));
-    rows += flipped<3>(taps_of_four(a, sums, first[3], first[4]));
-    for (std::size_t l = 0; l < 4; ++l) {
-      if (a.row[4 * t + l] >= 0) y[a.row[4 * t + l]] = rows[l];
+template <std::size_t lane_count, class T>
+COMPUEYE_INLINE void forward_symmetric(const RunningSums<T>& a, const T* scratch, T* y, std::size_t begin,
+                                       std::size_t end) {
+  const auto* sums = reinterpret_cast<const Lanes<T, lane_count>*>(scratch);
+  for (std::size_t t = begin; t < end; ++t) {
+    const auto first = [&](std::size_t q) { return a.first[(4 * t + q) * a.bands]; };
+    Lanes<T, lane_count> rows = taps_of<lane_count>(a, sums, first(0), first(1));
+    rows += flipped<1, T, lane_count>(taps_of<lane_count>(a, sums, first(1), first(2)));
+    rows += flipped<2, T, lane_count>(taps_of<lane_count>(a, sums, first(2), first(3)));
+    rows += flipped<3, T, lane_count>(taps_of<lane_count>(a, sums, first(3), first(4)));
+    const std::int32_t* row = a.row + lane_count * t;
+    for (std::size_t l = 0; l < lane_count; ++l) {
+      if (row[l] >= 0) y[row[l]] = rows[l];
     }
   }
 }
 
-template <class T>
-COMPUEYE_INLINE void adjoint_symmetric(const RunningSums<T>& a, const T* y, Four<T>* sums) {
+/// Taps of bands begin .. end-1.
+template <std::size_t lane_count, class T>
+COMPUEYE_INLINE void adjoint_symmetric(const RunningSums<T>& a, const T* y, T* scratch, std::size_t begin,
+                                       std::size_t end) {
+  auto* sums = reinterpret_cast<Lanes<T, lane_count>*>(scratch);
   for (std::size_t t = 0; t < a.tables; ++t) {
-    const std::uint32_t* first = a.first + 4 * t;
-    Four<T> rows = {};
-    for (std::size_t l = 0; l < 4; ++l) {
-      if (a.row[4 * t + l] >= 0) rows[l] = y[a.row[4 * t + l]];
+    const std::int32_t* row = a.row + lane_count * t;
+    Lanes<T, lane_count> rows = {};
+    for (std::size_t l = 0; l < lane_count; ++l) {
+      if (row[l] >= 0) rows[l] = y[row[l]];
     }
-    const Four<T> lanes[4] = {rows, flipped<1>(rows), flipped<2>(rows), flipped<3>(rows)};
+    const Lanes<T, lane_count> lanes[4] = {rows, flipped<1, T, lane_count>(rows), flipped<2, T, lane_count>(rows),
+                                           flipped<3, T, lane_count>(rows)};
     for (std::size_t q = 0; q < 4; ++q) {
-      for (std::size_t k = first[q]; k < first[q + 1]; ++k) sums[a.element[k]] += a.difference[k] * lanes[q];
+      const std::uint32_t* first = a.first + (4 * t + q) * a.bands;
+      for (std::size_t k = first[begin]; k < first[end]; ++k) sums[a.element[k]] += a.difference[k] * lanes[q];
     }
   }
 }
@@ -137,46 +137,72 @@ COMPUEYE_INLINE T taps_of_one(const RunningSums<T>& a, const T* sums, std::size_
 }
 
 template <class T>
-COMPUEYE_INLINE void forward_of(const RunningSums<T>& a, const T* x, T* y, T* scratch) {
-  auto* sums = reinterpret_cast<Four<T>*>(scratch);
-  sum_outward(a, x, sums);
-  if (a.symmetric) return forward_symmetric(a, sums, y);
-  for (std::size_t t = 0; t < a.tables; ++t) {
+COMPUEYE_INLINE void forward_each(const RunningSums<T>& a, const T* sums, T* y, std::size_t begin, std::size_t end) {
+  for (std::size_t t = begin; t < end; ++t) {
     T sum = T(0);
-    for (std::size_t q = 0; q < 4; ++q) sum += taps_of_one(a, scratch + q, a.first[4 * t + q], a.first[4 * t + q + 1]);
+    for (std::size_t q = 0; q < 4; ++q) {
+      sum += taps_of_one(a, sums + q, a.first[(4 * t + q) * a.bands], a.first[(4 * t + q + 1) * a.bands]);
+    }
     y[t] = sum;
   }
 }
 
 template <class T>
-COMPUEYE_INLINE void adjoint_of(const RunningSums<T>& a, const T* y, T* x, T* scratch) {
-  auto* sums = reinterpret_cast<Four<T>*>(scratch);
-  for (std::size_t k = 0; k < a.half_rows() * a.half_cols(); ++k) sums[k] = Four<T>{};
-  if (a.symmetric) {
-    adjoint_symmetric(a, y, sums);
-  } else {
-    for (std::size_t t = 0; t < a.tables; ++t) {
-      for (std::size_t q = 0; q < 4; ++q) {
-        for (std::size_t k = a.first[4 * t + q]; k < a.first[4 * t + q + 1]; ++k) {
-          scratch[4 * std::size_t{a.element[k]} + q] += a.difference[k] * y[t];
-        }
+COMPUEYE_INLINE void adjoint_each(const RunningSums<T>& a, const T* y, T* sums, std::size_t begin, std::size_t end) {
+  for (std::size_t t = 0; t < a.tables; ++t) {
+    for (std::size_t q = 0; q < 4; ++q) {
+      const std::uint32_t* first = a.first + (4 * t + q) * a.bands;
+      for (std::size_t k = first[begin]; k < first[end]; ++k) {
+        sums[4 * std::size_t{a.element[k]} + q] += a.difference[k] * y[t];
       }
     }
   }
-  sum_inward(a, sums, x);
+}
+
+template <class T>
+COMPUEYE_INLINE void clear_sums(const RunningSums<T>& a, T* sums, std::size_t begin, std::size_t end) {
+  const std::size_t row = (a.rows_at_once == 8 ? 8 : 4) * a.half_cols();
+  for (std::size_t k = begin * row; k < end * row; ++k) sums[k] = T(0);
+}
+
+template <class T>
+COMPUEYE_INLINE void forward_of(const RunningSums<T>& a, const T* x, T* y, T* scratch) {
+  if (a.rows_at_once == 8) {
+    sum_outward<8>(a, x, scratch, 0, a.half_rows());
+    return forward_symmetric<8>(a, scratch, y, 0, a.tables);
+  }
+  sum_outward<4>(a, x, scratch, 0, a.half_rows());
+  if (a.rows_at_once == 4) return forward_symmetric<4>(a, scratch, y, 0, a.tables);
+  forward_each(a, scratch, y, 0, a.tables);
+}
+
+template <class T>
+COMPUEYE_INLINE void adjoint_of(const RunningSums<T>& a, const T* y, T* x, T* scratch) {
+  clear_sums(a, scratch, 0, a.half_rows());
+  if (a.rows_at_once == 8) {
+    adjoint_symmetric<8>(a, y, scratch, 0, a.bands);
+    sum_inward<8>(a, scratch, x, 0, a.half_rows());
+    return sum_inward_transposed(a, scratch, x, 0, a.half_rows());
+  }
+  if (a.rows_at_once == 4) {
+    adjoint_symmetric<4>(a, y, scratch, 0, a.bands);
+  } else {
+    adjoint_each(a, y, scratch, 0, a.bands);
+  }
+  sum_inward<4>(a, scratch, x, 0, a.half_rows());
 }
 
 template <class T>
 std::size_t bytes_of(const RunningSums<T>& a) {
-  const std::size_t taps = a.first[4 * a.tables];
-  return taps * (sizeof(T) + sizeof(std::uint16_t)) + (4 * a.tables + 1) * sizeof(std::uint32_t) +
-         (a.symmetric ? 4 * a.tables * sizeof(std::int32_t) : 0);
+  const std::size_t taps = a.first[4 * a.tables * a.bands];
+  return taps * (sizeof(T) + sizeof(std::uint16_t)) +
+         (4 * a.tables * a.bands + 1 + a.bands + 1) * sizeof(std::uint32_t) +
+         (a.rows_at_once > 1 ? a.rows_at_once * a.tables * sizeof(std::int32_t) : 0);
 }
 
 template <class T>
 std::size_t flops_of(const RunningSums<T>& a) {
-  const std::size_t taps = a.first[4 * a.tables];
-  return taps * (a.symmetric ? 4 : 1) + 4 * a.half_rows() * a.half_cols();
+  return a.first[4 * a.tables * a.bands] * a.rows_at_once + a.scratch_size();
 }
 
 }  // namespace

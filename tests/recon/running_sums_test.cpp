@@ -63,10 +63,11 @@ std::vector<Eye> eyes() {
   nominal(7, 1.5, 8.0, {16, 16, 8, 8, 30});  // rows that are their own mirror images
   nominal(8, 1.5, 8.0, {15, 16, 8, 8, 30});  // a centre row of pixels
   nominal(16, 9.0, 60.0, {32, 48, 60, 60, 10});
+  nominal(10, 9.0, 60.0, {96, 96, 60, 60, 10});  // large enough for bands
   const hal::ObjectPlane plane{32, 32, 60, 60, 10};
   all.push_back(
       {"measured", seeing(calib::plausible_response(geometry(12, 10.0, 60.0), plane, {}, 3).value()), 32, 32});
-  for (const auto& [rows, cols] : {std::pair{1, 1}, {1, 9}, {9, 1}, {6, 7}, {7, 6}, {5, 5}}) {
+  for (const auto& [rows, cols] : {std::pair{1, 1}, {1, 9}, {9, 1}, {6, 7}, {7, 6}, {5, 5}, {101, 97}}) {
     all.push_back(
         {"runs " + std::to_string(rows) + "x" + std::to_string(cols), random_runs(random, 11, rows, cols), rows, cols});
   }
@@ -102,11 +103,13 @@ double bound(const Eye& eye, int m) {
 }
 
 template <class T>
-void check_against_double(const Eye& eye, const recon::MirrorSymmetry& symmetry, bool symmetric) {
+void check_against_double(const Eye& eye, const recon::MirrorSymmetry& symmetry,
+                          const std::vector<std::int32_t>& transposed, std::size_t at_once) {
   Random random(62);
-  const auto tables = recon::running_sum_tables<T>(eye.a, eye.rows, eye.cols, symmetry);
+  const auto tables = recon::running_sum_tables<T>(eye.a, eye.rows, eye.cols, symmetry, transposed);
   REQUIRE(tables.has_value());
-  CHECK(tables->view.symmetric == symmetric);
+  CHECK(tables->view.rows_at_once == at_once);
+  CHECK(recon::core::bytes(tables->view) == tables->bytes());
   const AlignedBytes memory(tables->view.scratch_size() * sizeof(T));
   auto* scratch = reinterpret_cast<T*>(memory.span().data());
   const auto x = random_vector(random, eye.rows * eye.cols), u = random_vector(random, eye.a.rows());
@@ -136,19 +139,43 @@ void check_against_double(const Eye& eye, const recon::MirrorSymmetry& symmetry,
 }  // namespace
 
 TEST_CASE("running sums are A and A' within the bound of their sums, with symmetry and without") {
-  int symmetric = 0;
+  int with_four = 0, with_eight = 0, banded = 0;
   for (const Eye& eye : eyes()) {
     CAPTURE(eye.name);
     const auto found = recon::find_mirror_symmetry(eye.a, eye.rows, eye.cols);
+    const auto transposed = recon::find_diagonal_symmetry(eye.a, eye.rows, eye.cols);
     const recon::MirrorSymmetry none{{found.permutations.front()}, {{1}}};
     const bool four = found.order() == 4 && eye.rows % 2 == 0 && eye.cols % 2 == 0;
-    symmetric += four ? 1 : 0;
-    check_against_double<float>(eye, found, four);
-    check_against_double<double>(eye, found, four);
-    check_against_double<float>(eye, none, false);
-    check_against_double<double>(eye, none, false);
+    const bool eight = four && eye.rows == eye.cols && !transposed.empty();
+    with_four += four ? 1 : 0;
+    with_eight += eight ? 1 : 0;
+    banded += recon::running_sum_tables<float>(eye.a, eye.rows, eye.cols, none)->view.bands > 1 ? 1 : 0;
+    if (eight) check_against_double<float>(eye, found, transposed, 8);
+    if (eight) check_against_double<double>(eye, found, transposed, 8);
+    check_against_double<float>(eye, found, {}, four ? 4 : 1);
+    check_against_double<double>(eye, found, {}, four ? 4 : 1);
+    check_against_double<float>(eye, none, {}, 1);
+    check_against_double<double>(eye, none, {}, 1);
   }
-  CHECK(symmetric >= 3);
+  CHECK(with_four == 4);
+  CHECK(with_eight == 3);
+  CHECK(banded == 2);
+}
+
+TEST_CASE("diagonal symmetry is its own inverse and asks for a square picture and lattice") {
+  const auto nominal = [](int rows, int cols, const hal::ObjectPlane& plane) {
+    hal::EyeGeometry eye = geometry(8, 1.5, 8.0);
+    eye.rows = rows;
+    eye.columns = cols;
+    return seeing(calib::nominal_response(eye, plane).value());
+  };
+  const Response square = nominal(8, 8, {16, 16, 8, 8, 30});
+  const auto transposed = recon::find_diagonal_symmetry(square, 16, 16);
+  REQUIRE(transposed.size() == 64);
+  for (std::int32_t m = 0; m < 64; ++m) CHECK(transposed[static_cast<std::size_t>(m)] == m % 8 * 8 + m / 8);
+  CHECK(recon::find_diagonal_symmetry(nominal(8, 6, {16, 16, 8, 8, 30}), 16, 16).empty());
+  CHECK(recon::find_diagonal_symmetry(nominal(8, 8, {16, 12, 8, 8, 30}), 16, 12).empty());
+  CHECK(recon::find_diagonal_symmetry(nominal(8, 8, {16, 16, 8, 9, 30}), 16, 16).empty());
 }
 
 TEST_CASE("an eye's operator is running sums, a matrix without runs is not") {
@@ -158,11 +185,12 @@ TEST_CASE("an eye's operator is running sums, a matrix without runs is not") {
     return tables.problem.a.kind;
   };
   Random random(63);
-  for (const Eye& eye : eyes()) {
-    if (eye.name == "nominal 8" && eye.rows == 16) {
-      CHECK(kind_of(eye.a, eye.rows, eye.cols) == recon::OperatorKind::running_sums_symmetric);
-    }
-  }
+  const auto nominal = [&](int side, double dphi, const hal::ObjectPlane& plane) {
+    return kind_of(seeing(calib::nominal_response(geometry(side, dphi, 60.0), plane).value()), plane.rows, plane.cols);
+  };
+  CHECK(nominal(24, 4.5, {96, 96, 60, 60, 10}) == recon::OperatorKind::running_sums_diagonal);
+  CHECK(nominal(8, 9.0, {96, 96, 60, 60, 10}) == recon::OperatorKind::running_sums_symmetric);  // few rows
+  CHECK(nominal(16, 9.0, {32, 48, 60, 60, 10}) == recon::OperatorKind::running_sums_symmetric);
   CHECK(kind_of(random_response(random, 20, 256, 1.0), 16, 16) == recon::OperatorKind::dense);
   CHECK(kind_of(random_response(random, 20, 256, 0.05), 16, 16) == recon::OperatorKind::csr);
   CHECK(kind_of(random_runs(random, 300, 20, 60), 20, 60) == recon::OperatorKind::running_sums);
