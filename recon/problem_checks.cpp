@@ -67,6 +67,9 @@ hal::Result<void> check_pair(const Objective& objective, const Plan& plan) {
   if (plan.l1_reweighting > 0.0 && !(plan.solver == SolverKind::admm && objective.basis == BasisKind::identity)) {
     return fail(ErrorCode::usage, "l1 reweighting", "needs admm and the identity basis");
   }
+  if (plan.warm_start && plan.solver != SolverKind::pdhg) {
+    return fail(ErrorCode::usage, "warm start", "needs pdhg: no other solver keeps anything from frame to frame");
+  }
   if (plan.solver == SolverKind::tsvd && plan.rank == 0 && !(objective.lambda > 0.0)) {
     return fail(ErrorCode::usage, "tsvd", "needs a rank, or a lambda above 0 (the least square of a singular value)");
   }

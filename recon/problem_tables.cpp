@@ -67,6 +67,7 @@ void fill_numbers(const Objective& objective, const Plan& plan, core::FrameProbl
   problem.bounded = objective.epsilon.has_value();
   problem.epsilon = static_cast<T>(objective.epsilon.value_or(0.0));
   problem.measure_gap = plan.measure_gap;
+  problem.warm_start = plan.warm_start;
   problem.l1_reweighting = static_cast<T>(plan.l1_reweighting);
   problem.rho = static_cast<T>(plan.rho);
   problem.relaxation = static_cast<T>(plan.relaxation);

@@ -18,6 +18,7 @@
 #include "recon/core/pdhg.hpp"
 #include "recon/core/tikhonov.hpp"
 #include "recon/core/tsvd.hpp"
+#include "recon/core/warm_start.hpp"
 #include "recon/core/workspace.hpp"
 #include "recon/deflation_rule.hpp"
 #include "recon/dual_step_tables.hpp"
@@ -282,6 +283,10 @@ std::size_t Reconstructor::required_bytes() const noexcept {
 std::size_t Reconstructor::table_bytes() const noexcept {
   const std::size_t owned = std::visit([](const auto& tables) { return tables.bytes(); }, tables_->by_precision);
   return owned + tables_->factor.values.size() * sizeof(float) + tables_->seeing.size() * sizeof(std::int32_t);
+}
+
+void Reconstructor::forget_last_frame(std::span<std::byte> workspace) const noexcept {
+  if (plan().warm_start && workspace.size() >= required_bytes()) core::WarmStart<float>::forget(workspace.data());
 }
 
 FrameInfo Reconstructor::solve(std::span<const float> y, std::span<const float> weights, std::span<std::byte> workspace,

@@ -50,6 +50,9 @@ struct Plan {
   /// Seeing channels that may have a weight other than one in a frame; -1 = a tenth of them, rounded up. Costs
   /// max_reweighted * (M + max_reweighted) numbers of workspace.
   int max_reweighted = -1;
+  /// pdhg: a frame goes on from the last one that was solved in the same workspace, unless its samples have changed too
+  /// much (core/warm_start.hpp); FrameInfo::warm says which. The same frames in the same order give the same bits.
+  bool warm_start = false;
   /// Fills in FrameInfo::duality_gap, which costs about one iteration a frame.
   bool measure_gap = false;
 };
@@ -102,6 +105,9 @@ class Reconstructor {
   /// What the factor of such a plan is, without its values: what a stored one has to be to be used.
   [[nodiscard]] static Factor wanted_factor(const Response& response, int image_rows, int image_cols,
                                             const Objective& objective, const Plan& plan);
+
+  /// The next frame in this workspace starts cold, whatever the plan says. `workspace` as for solve().
+  void forget_last_frame(std::span<std::byte> workspace) const noexcept;
 
   /// The factor, to be stored; without values where the plan needs none.
   [[nodiscard]] const Factor& factor() const noexcept;

@@ -42,6 +42,7 @@ struct FrameInfo {
   OperatingPoint point;
   Health health = Health::invalid;
   int iterations = 0;
+  bool warm = false;             ///< it went on from the last frame (Plan::warm_start)
   int channels_used = 0;         ///< seeing rows with a weight above zero
   int channels_reweighted = 0;   ///< seeing rows with a weight other than one in this frame
   double objective = 0.0;        ///< 1/2 ||W^(1/2)(Ax-y)||^2 + lambda ||Psi x||_1 (tikhonov: + lambda/2 ||x||^2)

@@ -54,7 +54,8 @@ struct FrameProblem {
   const T* atom_norms = nullptr;  ///< a.cols norms ||A psi_j||, for omp
   SingularModes<T> modes;         ///< for tsvd
   bool measure_gap = false;
-  OperatingPoint point;  ///< point.iterations = K
+  bool warm_start = false;  ///< pdhg: frames go on from the last one
+  OperatingPoint point;     ///< point.iterations = K
 
   [[nodiscard]] std::size_t pixels() const noexcept { return a.cols; }
 };

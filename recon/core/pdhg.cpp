@@ -6,6 +6,7 @@
 #include "recon/core/relaxed_steps.hpp"
 #include "recon/core/square_root.hpp"
 #include "recon/core/vector_sums.hpp"
+#include "recon/core/warm_start.hpp"
 #include "recon/core/weighted_dual_step.hpp"
 
 namespace compueye::recon::core {
@@ -19,6 +20,7 @@ class Pdhg {
         n_(problem.pixels()),
         sparse_basis_(problem.point.basis != BasisKind::identity),
         coefficient_count_(sparse_basis_ ? problem.psi.coefficients() : 0),
+        warm_start_(problem, memory),
         row_dual_(memory.take<T>(problem.a.rows)),
         x_(memory.take<T>(n_)),
         basis_dual_(memory.take<T>(coefficient_count_)),
@@ -40,7 +42,8 @@ class Pdhg {
       deliver(x_, false, n_, info, x);
       return info;
     }
-    start_cold();
+    info.warm = warm_start_.allowed(dual_step_);
+    if (!info.warm) start_cold();
     for (int k = 1; k < problem_.point.iterations; ++k) {
       slope();
       descend(gradient_, T(1) / problem_.rho, threshold_, lo_, hi_, problem_.relaxation, x_, ahead_, n_);
@@ -48,6 +51,7 @@ class Pdhg {
     }
     finish(info);
     deliver(gradient_, finite_, n_, info, x);
+    warm_start_.keep(dual_step_.samples(), info.health != Health::invalid);
     return info;
   }
 
@@ -91,7 +95,8 @@ class Pdhg {
     const double moved = static_cast<double>(squared_distance(gradient_, x_, n_));
     for (std::size_t k = 0; k < n_; ++k) x_[k] += problem_.relaxation * (gradient_[k] - x_[k]);
     flush_tiny(x_, n_);
-    rise();
+    // The picture is found; the duals are moved for those who ask for them.
+    if (problem_.warm_start || problem_.measure_gap || problem_.point.iterations == 1) rise();
     info.primal_residual = size > 0.0 ? square_root(moved / size) : 0.0;
     judge(info);
   }
@@ -131,6 +136,7 @@ class Pdhg {
   std::size_t n_;
   bool sparse_basis_;
   std::size_t coefficient_count_;
+  WarmStart<T> warm_start_;
   T* row_dual_;
   T* x_;
   T* basis_dual_;

@@ -172,6 +172,8 @@ TEST_CASE("keys that contradict each other are told on the line of one of them")
       {"constraint = \"box\"", "constraint = \"none\"", 24, "box is given in [reconstruction] without",
        ErrorCode::mismatch},
       {"constraint = \"box\"\n", "", 23, "box is given in [reconstruction] without", ErrorCode::mismatch},
+      {"[scene]", "start = \"warm\"\n[scene]", 25, "start = \"warm\" is given in [reconstruction] without solver",
+       ErrorCode::mismatch},
       {"columns = 10", "columns = 10\npitch_mm = 1", 6, "pitch_mm means nothing in a fisheye lattice",
        ErrorCode::mismatch},
       {"columns = 10", "columns = 10\nlattice = \"plane\"\npitch_mm = 1", 8,

@@ -49,6 +49,7 @@ struct ReconstructionSettings {
   std::optional<double> sigma;   ///< noise of one sample in units of y, >= 0; absent: SensorSettings::noise_sigma()
   std::optional<double> rho;     ///< > 0; absent: by rule
   double relaxation = 0.0;       ///< 0 < relaxation < 2
+  bool warm_start = false;
   std::optional<recon::OperatorKind> op;  ///< absent: the quickest that keeps every digit
 };
 

@@ -104,6 +104,11 @@ hal::Result<void> check_sensor(const Board& board) {
 }
 
 hal::Result<void> check_reconstruction(const Board& board) {
+  if (board.reconstruction.warm_start && board.reconstruction.solver != recon::SolverKind::pdhg) {
+    return hal::fail(ErrorCode::mismatch, board.place("reconstruction", "start"),
+                     "start = \"warm\" is given in [reconstruction] without solver = \"pdhg\", which alone keeps "
+                     "anything from frame to frame; set that or remove the line");
+  }
   const recon::ConstraintKind constraint = board.reconstruction.constraint;
   if (!board.states("reconstruction", "box") || constraint == recon::ConstraintKind::box) return {};
   return hal::fail(ErrorCode::mismatch, board.place("reconstruction", "box"),

@@ -4,7 +4,8 @@
 #include <numbers>
 
 #include "firmware/app/board/board_schema.hpp"
-#include "firmware/app/board/reconstruction_names.hpp"
+#include "firmware/app/board/key_values.hpp"
+#include "firmware/app/board/reconstruction_keys.hpp"
 
 // The key table. A new key is one entry here and one row in docs/board-file.md (a test prints the row).
 
@@ -18,49 +19,10 @@ constexpr double deg = std::numbers::pi / 180.0;
 constexpr Range length_mm{1e-6, 1e6};
 constexpr Range length_or_zero_mm{0.0, 1e6};
 
-double real_of(const V& value) {
-  const auto* whole = std::get_if<std::int64_t>(&value);
-  return whole != nullptr ? static_cast<double>(*whole) : std::get<double>(value);
-}
-int whole_of(const V& value) {
-  return static_cast<int>(std::get<std::int64_t>(value));
-}
-const std::string& text_of(const V& value) {
-  return std::get<std::string>(value);
-}
-
-std::array<double, 2> pair_of(const V& value) {
-  if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&value)) {
-    return {static_cast<double>((*whole)[0]), static_cast<double>((*whole)[1])};
-  }
-  const auto& real = std::get<std::vector<double>>(value);
-  return {real[0], real[1]};
-}
-
 std::vector<int> sorted_list_of(const V& value) {
   std::vector<int> list;
   for (const std::int64_t item : std::get<std::vector<std::int64_t>>(value)) list.push_back(static_cast<int>(item));
   std::sort(list.begin(), list.end());
-  return list;
-}
-
-template <class Kind>
-std::vector<std::string_view> words(std::span<const Named<Kind>> names) {
-  std::vector<std::string_view> list;
-  for (const Named<Kind>& named : names) list.push_back(named.name);
-  return list;
-}
-
-template <class Kind>
-Kind kind_of(std::span<const Named<Kind>> names, const V& value) {
-  const auto found =
-      std::find_if(names.begin(), names.end(), [&](const Named<Kind>& named) { return named.name == text_of(value); });
-  return found == names.end() ? Kind{} : found->kind;
-}
-
-std::vector<std::string_view> operator_words() {
-  std::vector<std::string_view> list = words(operator_names());
-  list.insert(list.begin(), "auto");
   return list;
 }
 
@@ -297,97 +259,13 @@ std::vector<KeySpec> scene_keys() {
   };
 }
 
-std::vector<KeySpec> problem_keys() {
-  return {
-      {.section = "reconstruction",
-       .name = "solver",
-       .type = choice,
-       .choices = words(solver_names()),
-       .fallback = V{std::string("admm")},
-       .meaning = "docs/solvers.md says which to use when",
-       .store = [](Board& b, const V& v) { b.reconstruction.solver = kind_of(solver_names(), v); }},
-      {.section = "reconstruction",
-       .name = "basis",
-       .type = choice,
-       .choices = words(basis_names()),
-       .fallback = V{std::string("dct")},
-       .meaning = "in which the picture is taken to be sparse",
-       .store = [](Board& b, const V& v) { b.reconstruction.basis = kind_of(basis_names(), v); }},
-      {.section = "reconstruction",
-       .name = "constraint",
-       .type = choice,
-       .choices = words(constraint_names()),
-       .fallback = V{std::string("nonnegative")},
-       .meaning = "what every pixel must obey",
-       .store = [](Board& b, const V& v) { b.reconstruction.constraint = kind_of(constraint_names(), v); }},
-      {.section = "reconstruction",
-       .name = "box",
-       .type = real_pair,
-       .range = {-1e6, 1e6},
-       .fallback = V{std::vector<std::int64_t>{0, 1}},
-       .meaning = "least and greatest intensity, white being 1; only with the box constraint",
-       .store =
-           [](Board& b, const V& v) {
-             b.reconstruction.box_lo = pair_of(v)[0];
-             b.reconstruction.box_hi = pair_of(v)[1];
-           }},
-  };
-}
-
-std::vector<KeySpec> solver_keys() {
-  return {
-      {.section = "reconstruction",
-       .name = "iterations",
-       .type = whole,
-       .range = {1, 1000000},
-       .fallback = V{std::int64_t{100}},
-       .meaning = "of the solver in every frame, no more and no fewer",
-       .store = [](Board& b, const V& v) { b.reconstruction.iterations = whole_of(v); }},
-      {.section = "reconstruction",
-       .name = "lambda",
-       .type = real,
-       .range = {0, 1e12},
-       .meaning = "weight of the penalty; left out, it follows from the noise",
-       .store = [](Board& b, const V& v) { b.reconstruction.lambda = real_of(v); }},
-      {.section = "reconstruction",
-       .name = "sigma",
-       .type = real,
-       .range = {0, 1e9},
-       .meaning = "noise of one sample in fully seen white pixels; left out, it is LSB sqrt(read_noise_lsb^2 + 1/12)",
-       .store = [](Board& b, const V& v) { b.reconstruction.sigma = real_of(v); }},
-      {.section = "reconstruction",
-       .name = "rho",
-       .type = real,
-       .range = {1e-12, 1e12},
-       .meaning = "ADMM penalty; left out, it follows from the response",
-       .store = [](Board& b, const V& v) { b.reconstruction.rho = real_of(v); }},
-      {.section = "reconstruction",
-       .name = "relaxation",
-       .type = real,
-       .range = {0, 2, true, true},
-       .fallback = V{1.7},
-       .meaning = "ADMM over-relaxation",
-       .store = [](Board& b, const V& v) { b.reconstruction.relaxation = real_of(v); }},
-      {.section = "reconstruction",
-       .name = "operator",
-       .type = choice,
-       .choices = operator_words(),
-       .fallback = V{std::string("auto")},
-       .meaning = "how A is applied; auto is the quickest that keeps every digit, bf16 and int8 round the response",
-       .store =
-           [](Board& b, const V& v) {
-             if (text_of(v) != "auto") b.reconstruction.op = kind_of(operator_names(), v);
-           }},
-  };
-}
-
 }  // namespace
 
 std::span<const KeySpec> board_schema() {
   static const std::vector<KeySpec> keys = [] {
     std::vector<KeySpec> all;
-    for (auto part : {name_keys(), eye_keys(), object_keys(), sensor_keys(), source_keys(), problem_keys(),
-                      solver_keys(), scene_keys()}) {
+    for (auto part :
+         {name_keys(), eye_keys(), object_keys(), sensor_keys(), source_keys(), reconstruction_keys(), scene_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;

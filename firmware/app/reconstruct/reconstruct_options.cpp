@@ -95,7 +95,10 @@ void add_problem(CLI::App& command, ReconstructOptions& o) {
                   "adm: min ||Psi x||_1 subject to ||W^(1/2)(Ax-y)|| <= V; omp: stop there; in white pixels")
       ->type_name("V")
       ->check(number_where(not_negative, "a finite number of 0 or more"));
-  command.add_option("--rank", o.rank, "tsvd: how many singular values to keep (with --sigma: by rule)")
+  command
+      .add_option(
+          "--rank", o.rank,
+          "tsvd: how many singular values to keep (with --sigma: by rule); pdhg: how many modes to treat exactly (400)")
       ->type_name("R")
       ->check(whole_number(1, 1'000'000));
 }
@@ -120,6 +123,12 @@ void add_plan(CLI::App& command, ReconstructOptions& o) {
   command.add_option("--precision", o.precision, "f32 (default) or f64")
       ->type_name("NAME")
       ->check(one_of({"f32", "f64"}, {}));
+  command
+      .add_option(
+          "--start", o.start,
+          "with pdhg: cold (default), or warm: a frame goes on from the last one unless it has changed too much")
+      ->type_name("NAME")
+      ->check(one_of({"cold", "warm"}, {}));
   command
       .add_option("--operator", o.op,
                   "how A is applied: auto (default: the quickest that keeps every digit), dense, csr, running-sums, "
@@ -200,6 +209,7 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
   problem.objective.epsilon = o.epsilon;
   problem.plan.solver = kind_named(solver_names(), o.solver);
   if (o.as_published) problem.plan.solver = recon::SolverKind::adm_as_published;
+  problem.plan.warm_start = o.start == "warm";
   if (o.op != "auto") problem.plan.op = kind_named(operator_names(), o.op);
   problem.plan.rank = o.rank.value_or(0);
   problem.plan.l1_reweighting = o.reweight.value_or(0.0);

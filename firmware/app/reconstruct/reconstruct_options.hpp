@@ -22,6 +22,7 @@ struct ReconstructOptions {
   std::string solver = "admm";
   std::string basis = "identity";
   std::string precision = "f32";
+  std::string start = "cold";
   std::string op = "auto";
   std::string box;  ///< "LO,HI", empty: no box
   bool nonnegative = false;

@@ -50,9 +50,10 @@ Result check_direct(const ReconstructOptions& o) {
 }
 
 Result check_distance(const ReconstructOptions& o) {
-  if (o.epsilon || o.rank) {
+  const bool cut = o.rank && o.solver == "tsvd";
+  if (o.epsilon || cut) {
     const char* option = o.epsilon ? "--epsilon" : "--rank";
-    if (!o.lambda && !o.sigma && !(o.epsilon && o.rank)) return {};
+    if (!o.lambda && !o.sigma && !(o.epsilon && cut)) return {};
     return usage(option, "takes the place of --lambda and --sigma, expected only one of them");
   }
   if (o.lambda || o.sigma) return {};
@@ -94,16 +95,19 @@ Result check_pair(const ProblemStatement& problem) {
 
 Result check_solver_options(const ReconstructOptions& o) {
   return only_with(o.epsilon.has_value(), "--epsilon", "a bound of the residual", o.solver, {"adm", "omp"})
-      .and_then(
-          [&] { return only_with(o.rank.has_value(), "--rank", "a number of singular values", o.solver, {"tsvd"}); })
+      .and_then([&] {
+        return only_with(o.rank.has_value(), "--rank", "a number of singular values or modes", o.solver,
+                         {"tsvd", "pdhg"});
+      })
       .and_then([&] { return only_with(o.as_published, "--as-published", "what YALL1 does", o.solver, {"adm"}); })
       .and_then([&] { return check_direct(o); })
       .and_then([&] {
-        return only_with(o.rho.has_value(), "--rho", "the penalty of a cached factor", o.solver, {"admm", "adm"});
+        return only_with(o.rho.has_value(), "--rho", "a penalty or an inverse step", o.solver, {"admm", "adm", "pdhg"});
       })
       .and_then([&] {
-        return only_with(o.relaxation.has_value(), "--relaxation", "over-relaxation", o.solver, {"admm", "cp"});
+        return only_with(o.relaxation.has_value(), "--relaxation", "over-relaxation", o.solver, {"admm", "cp", "pdhg"});
       })
+      .and_then([&] { return only_with(o.start == "warm", "--start warm", "a last frame", o.solver, {"pdhg"}); })
       .and_then([&] { return only_with(o.reweight.has_value(), "--reweight", "a second pass", o.solver, {"admm"}); })
       .and_then([&] {
         if (!o.reweight || o.basis == "identity") return Result{};
