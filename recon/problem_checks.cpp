@@ -8,6 +8,7 @@
 #include "recon/number_text.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
+#include "recon/worker_threads.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -46,6 +47,10 @@ hal::Result<void> check_plan(const Plan& plan) {
     return out_of_range("rho", plan.rho, "more than 0, or 0 for the rule");
   if (!std::isfinite(plan.l1_reweighting) || plan.l1_reweighting < 0.0) {
     return out_of_range("l1 reweighting", plan.l1_reweighting, "a brightness above 0, or 0 for one pass");
+  }
+  static_assert(WorkerThreads::most == 64);
+  if (plan.threads < 1 || plan.threads > WorkerThreads::most) {
+    return out_of_range("threads", plan.threads, "1 to 64");
   }
   if (plan.rank < 0) return out_of_range("rank", plan.rank, "1 or more, or 0 for as many as lambda says");
   return {};

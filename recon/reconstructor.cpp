@@ -30,6 +30,7 @@
 #include "recon/problem_checks.hpp"
 #include "recon/problem_tables.hpp"
 #include "recon/quantised_response.hpp"
+#include "recon/worker_threads.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -99,6 +100,16 @@ struct Reconstructor::Tables {
   std::vector<std::int32_t> seeing;
   Factor factor;  // of f32 the inverse in use; modes are only kept to be stored
   std::variant<OwnedTables<float>, OwnedTables<double>> by_precision;
+  std::unique_ptr<WorkerThreads> workers;  // none where one thread does it all
+
+  [[nodiscard]] hal::Result<void> employ_workers() {
+    if (plan.threads == 1) return {};
+    auto started = WorkerThreads::start(plan.threads);
+    if (!started) return tl::unexpected(started.error());
+    workers = std::move(*started);
+    std::visit([&](auto& tables) { tables.problem.employ(workers->crew()); }, by_precision);
+    return {};
+  }
 
   template <class T>
   hal::Result<void> fill(const Response& response, std::optional<Factor> stored, const Progress& progress) {
@@ -227,6 +238,7 @@ hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& resp
   auto filled = plan.precision == Precision::f32 ? tables->fill<float>(response, std::move(factor), progress)
                                                  : tables->fill<double>(response, std::move(factor), progress);
   if (!filled) return tl::unexpected(filled.error());
+  if (auto employed = tables->employ_workers(); !employed) return tl::unexpected(employed.error());
   return Reconstructor(std::move(tables));
 }
 

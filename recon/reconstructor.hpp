@@ -45,6 +45,9 @@ struct Plan {
   /// running_sums stands for any number of rows at once. Dense runs in bf16 or int8 have to be asked for: the problem
   /// that is then solved, factor and modes included, is that of the rounded matrix (recon/quantised_response.hpp).
   std::optional<OperatorKind> op = std::nullopt;
+  /// That share a frame's work, the caller's among them: 1 .. WorkerThreads::most, no more than there are cores to
+  /// spare. Same bits for any number. Pictures of fewer than 9,216 pixels are left to one.
+  int threads = 1;
   /// tsvd: how many singular pairs to keep; 0 = those with s^2 >= lambda, which is where tikhonov's filter is a half.
   int rank = 0;
   /// Seeing channels that may have a weight other than one in a frame; -1 = a tenth of them, rounded up. Costs
@@ -58,7 +61,8 @@ struct Plan {
 };
 
 /// A problem that is set up: operator tables, basis tables and factor. Immutable after create(); solve() may run from
-/// several threads at once, each with its own workspace, and neither allocates, locks nor throws.
+/// several threads at once, each with its own workspace, and neither allocates, locks nor throws; with Plan::threads it
+/// waits for its workers.
 class Reconstructor {
  public:
   /// `image_rows * image_cols` must be the response's number of columns. `factor` may hand in a stored one: it is

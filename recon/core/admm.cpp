@@ -29,17 +29,28 @@ struct Copy {
     for (std::size_t k = 0; k < n; ++k) z[k] = u[k] = T(0);
   }
 
-  void update(const T* x, std::size_t n, T relaxation) noexcept {
-    if (thresholds == nullptr) {
-      relaxed_prox_step(x, z, u, n, relaxation, threshold, lo, hi);
-    } else {
-      relaxed_prox_step(x, z, u, n, relaxation, thresholds, lo, hi);
-    }
+  void update(const T* x, std::size_t n, T relaxation, const Crew& crew) noexcept {
+    crew.share(n, n, [&](std::size_t, std::size_t begin, std::size_t end) {
+      const std::size_t count = end - begin;
+      if (thresholds == nullptr) {
+        relaxed_prox_step(x + begin, z + begin, u + begin, count, relaxation, threshold, lo, hi);
+      } else {
+        relaxed_prox_step(x + begin, z + begin, u + begin, count, relaxation, thresholds + begin, lo, hi);
+      }
+    });
   }
 
-  void update_and_measure(const T* x, T* before, std::size_t n, T relaxation, SplitResiduals& residuals) noexcept {
+  /// out = z - u
+  void subtract_dual(T* out, std::size_t n, const Crew& crew) const noexcept {
+    crew.share(n, n, [&](std::size_t, std::size_t begin, std::size_t end) {
+      subtract(z + begin, u + begin, out + begin, end - begin);
+    });
+  }
+
+  void update_and_measure(const T* x, T* before, std::size_t n, T relaxation, const Crew& crew,
+                          SplitResiduals& residuals) noexcept {
     for (std::size_t k = 0; k < n; ++k) before[k] = z[k];
-    update(x, n, relaxation);
+    update(x, n, relaxation, crew);
     residuals.add(x, z, before, u, n);
   }
 };
@@ -140,22 +151,24 @@ class Admm {
 
   /// x_ = the point the copies pull to: K0^-1 (Psi' (z - u) + (z - u)) or their average, or the only one.
   void meet() noexcept {
-    if (!sparse_basis_) return subtract(in_pixels_.z, in_pixels_.u, x_, n_);
-    subtract(in_basis_.z, in_basis_.u, coefficients_, coefficient_count_);
+    if (!sparse_basis_) return in_pixels_.subtract_dual(x_, n_, problem_.crew);
+    in_basis_.subtract_dual(coefficients_, coefficient_count_, problem_.crew);
     synthesise(problem_.psi, coefficients_, x_, scratch_);
     if (smooth_) {
       for (std::size_t k = 0; k < n_; ++k) x_[k] += in_pixels_.z[k] - in_pixels_.u[k];
       apply_inverse(problem_.metric, x_, coefficients_, scratch_);
     } else if (pixel_copy_) {
-      blend_difference(in_pixels_.z, in_pixels_.u, T(0.5), x_, n_);
+      problem_.crew.share(n_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
+        blend_difference(in_pixels_.z + begin, in_pixels_.u + begin, T(0.5), x_ + begin, end - begin);
+      });
     }
   }
 
   void move(Copy<T>& copy, const T* x, std::size_t n, SplitResiduals* residuals) noexcept {
     if (residuals == nullptr) {
-      copy.update(x, n, problem_.relaxation);
+      copy.update(x, n, problem_.relaxation, problem_.crew);
     } else {
-      copy.update_and_measure(x, before_, n, problem_.relaxation, *residuals);
+      copy.update_and_measure(x, before_, n, problem_.relaxation, problem_.crew, *residuals);
     }
   }
 

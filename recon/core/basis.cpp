@@ -24,7 +24,7 @@ void analyse_of(const Basis<T>& psi, const T* x, T* c, T* scratch) noexcept {
     case BasisKind::dft:
       return fourier_forward(psi.fourier, x, c, scratch);
     case BasisKind::tv:
-      return differences(x, psi.rows, psi.cols, c);
+      return differences(x, psi.rows, psi.cols, c, psi.dct.crew);
   }
 }
 
@@ -41,7 +41,7 @@ void synthesise_of(const Basis<T>& psi, const T* c, T* x, T* scratch) noexcept {
     case BasisKind::dft:
       return fourier_inverse(psi.fourier, c, x, scratch);
     case BasisKind::tv:
-      return differences_adjoint(c, psi.rows, psi.cols, x);
+      return differences_adjoint(c, psi.rows, psi.cols, x, psi.dct.crew);
   }
 }
 
@@ -49,8 +49,8 @@ void synthesise_of(const Basis<T>& psi, const T* c, T* x, T* scratch) noexcept {
 
 template <class T>
 std::size_t Basis<T>::scratch_size() const noexcept {
-  // The separable transforms all work on three strips of the longer side.
-  return kind == BasisKind::identity ? 0 : dct_scratch_size(rows, cols);
+  // The separable transforms all work on strips of the longer side.
+  return kind == BasisKind::identity ? 0 : dct_scratch_size(rows, cols) * dct.crew.workers;
 }
 
 template struct Basis<float>;

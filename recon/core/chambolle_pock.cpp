@@ -59,10 +59,12 @@ class ChambollePock {
     }
     flush_tiny(row_dual_, problem_.a.rows);
     analyse(problem_.psi, ahead_, coefficients_, scratch_);
-    for (std::size_t k = 0; k < coefficient_count_; ++k) {
-      const T dual = within_lambda(basis_dual_[k] + problem_.basis_step * coefficients_[k]);
-      basis_dual_[k] += relaxation * (dual - basis_dual_[k]);
-    }
+    problem_.crew.share(coefficient_count_, coefficient_count_, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const T dual = within_lambda(basis_dual_[k] + problem_.basis_step * coefficients_[k]);
+        basis_dual_[k] += relaxation * (dual - basis_dual_[k]);
+      }
+    });
     flush_tiny(basis_dual_, coefficient_count_);
   }
 
@@ -72,9 +74,11 @@ class ChambollePock {
     samples_.adjoint_accumulate(row_dual_, projected_);
     const T lo = problem_.constrained && problem_.lo > T(-1e30) ? problem_.lo : T(-1e30);
     const T hi = problem_.constrained && problem_.hi < T(1e30) ? problem_.hi : T(1e30);
-    for (std::size_t k = 0; k < n_; ++k) {
-      projected_[k] = prox_l1_box(x_[k] - problem_.primal_steps[k] * projected_[k], T(0), lo, hi);
-    }
+    problem_.crew.share(n_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        projected_[k] = prox_l1_box(x_[k] - problem_.primal_steps[k] * projected_[k], T(0), lo, hi);
+      }
+    });
     flush_tiny(projected_, n_);
     const double size = static_cast<double>(dot(projected_, projected_, n_));
     const double moved = static_cast<double>(squared_distance(projected_, x_, n_));

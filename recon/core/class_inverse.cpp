@@ -11,20 +11,29 @@ void add_back(const ClassInverse<T>& h, const typename ClassInverse<T>::Part& pa
   }
 }
 
+/// What class c makes of x; `in` and `out` are as long as its matrix.
+template <class T>
+void multiply_class(const ClassInverse<T>& h, const typename ClassInverse<T>::Part& part, const T* x, T* in,
+                    T* out) noexcept {
+  for (std::size_t p = 0; p < part.matrix.order; ++p) in[p] = T(0);
+  for (std::size_t m = 0; m < h.order; ++m) {
+    if (part.index[m] >= 0) in[part.index[m]] += part.share[m] * x[m];
+  }
+  multiply(part.matrix, in, out);
+}
+
 template <class T>
 void multiply_of(const ClassInverse<T>& h, const T* x, T* y, T* scratch) noexcept {
   if (h.classes == 1) return multiply(h.parts[0].matrix, x, y);
+  // Orders of the classes add up to the whole one's.
+  std::size_t first[5] = {};
+  for (std::size_t c = 0; c < h.classes; ++c) first[c + 1] = first[c] + h.parts[c].matrix.order;
   T *in = scratch, *out = scratch + h.order;
+  h.crew.share(h.classes, h.order * h.order, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) multiply_class(h, h.parts[c], x, in + first[c], out + first[c]);
+  });
   for (std::size_t m = 0; m < h.order; ++m) y[m] = T(0);
-  for (std::size_t c = 0; c < h.classes; ++c) {
-    const auto& part = h.parts[c];
-    for (std::size_t p = 0; p < part.matrix.order; ++p) in[p] = T(0);
-    for (std::size_t m = 0; m < h.order; ++m) {
-      if (part.index[m] >= 0) in[part.index[m]] += part.share[m] * x[m];
-    }
-    multiply(part.matrix, in, out);
-    add_back(h, part, out, T(1), y);
-  }
+  for (std::size_t c = 0; c < h.classes; ++c) add_back(h, h.parts[c], out + first[c], T(1), y);
 }
 
 template <class T>

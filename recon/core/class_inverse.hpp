@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "recon/core/crew.hpp"
 #include "recon/core/packed_symmetric.hpp"
 
 namespace compueye::recon::core {
@@ -20,12 +21,13 @@ struct ClassInverse {
   std::size_t order = 0;  ///< rows of A
   std::size_t classes = 0;
   Part parts[4];
+  Crew crew = {};  ///< shares classes
 
   /// Elements of T that multiply() and expand_row() want as scratch.
   [[nodiscard]] std::size_t scratch_size() const noexcept { return classes > 1 ? 2 * order : 0; }
 };
 
-/// y = H x; reads every stored value once.
+/// y = H x; reads every stored value once. Classes are added in ascending order.
 void multiply(const ClassInverse<float>& h, const float* x, float* y, float* scratch) noexcept;
 void multiply(const ClassInverse<double>& h, const double* x, double* y, double* scratch) noexcept;
 

@@ -204,33 +204,63 @@ COMPUEYE_INLINE void strip_transform(bool inverse, const DctTable<T>& table, T* 
   }
 }
 
+/// Which way, and along what.
+enum class Pass { forward_columns, forward_rows, inverse_columns, inverse_rows };
+
 template <class T>
-COMPUEYE_INLINE void transform_2d(bool inverse, const Dct2d<T>& psi, const T* in, T* out, T* scratch) {
+COMPUEYE_INLINE void transform_strips(Pass pass, const Dct2d<T>& psi, const T* in, T* out, T* scratch,
+                                      std::size_t begin, std::size_t end) {
   const std::size_t rows = psi.rows.length, cols = psi.cols.length;
-  along_columns(
-      rows, cols, cols, in, out, scratch, [&](T * strip, T * result, T * work) __attribute__((always_inline)) {
-        strip_transform(inverse, psi.rows, strip, result, work);
-      });
-  along_rows(
-      rows, cols, cols, out, out, scratch, [&](T * strip, T * result, T * work) __attribute__((always_inline)) {
-        strip_transform(inverse, psi.cols, strip, result, work);
-      });
+  const bool inverse = pass == Pass::inverse_columns || pass == Pass::inverse_rows;
+  if (pass == Pass::forward_columns || pass == Pass::inverse_columns) {
+    along_columns(
+        rows, cols, cols, in, out, scratch, begin,
+        end, [&](T * strip, T * result, T * work) __attribute__((always_inline)) {
+          strip_transform(inverse, psi.rows, strip, result, work);
+        });
+  } else {
+    along_rows(
+        rows, cols, cols, in, out, scratch, begin,
+        end, [&](T * strip, T * result, T * work) __attribute__((always_inline)) {
+          strip_transform(inverse, psi.cols, strip, result, work);
+        });
+  }
+}
+
+COMPUEYE_MULTIVERSION void do_pass(Pass pass, const Dct2d<float>& psi, const float* in, float* out, float* scratch,
+                                   std::size_t begin, std::size_t end) noexcept {
+  transform_strips(pass, psi, in, out, scratch, begin, end);
+}
+COMPUEYE_MULTIVERSION void do_pass(Pass pass, const Dct2d<double>& psi, const double* in, double* out, double* scratch,
+                                   std::size_t begin, std::size_t end) noexcept {
+  transform_strips(pass, psi, in, out, scratch, begin, end);
+}
+
+template <class T>
+void transform_2d(bool inverse, const Dct2d<T>& psi, const T* in, T* out, T* scratch) noexcept {
+  const std::size_t rows = psi.rows.length, cols = psi.cols.length;
+  const std::size_t apart = dct_scratch_size(rows, cols);
+  psi.crew.share(strips_of(cols), rows * cols, [&](std::size_t worker, std::size_t begin, std::size_t end) {
+    do_pass(inverse ? Pass::inverse_columns : Pass::forward_columns, psi, in, out, scratch + worker * apart, begin,
+            end);
+  });
+  psi.crew.share(strips_of(rows), rows * cols, [&](std::size_t worker, std::size_t begin, std::size_t end) {
+    do_pass(inverse ? Pass::inverse_rows : Pass::forward_rows, psi, out, out, scratch + worker * apart, begin, end);
+  });
 }
 
 }  // namespace
 
-COMPUEYE_MULTIVERSION void dct_forward(const Dct2d<float>& psi, const float* in, float* out, float* scratch) noexcept {
+void dct_forward(const Dct2d<float>& psi, const float* in, float* out, float* scratch) noexcept {
   transform_2d(false, psi, in, out, scratch);
 }
-COMPUEYE_MULTIVERSION void dct_forward(const Dct2d<double>& psi, const double* in, double* out,
-                                       double* scratch) noexcept {
+void dct_forward(const Dct2d<double>& psi, const double* in, double* out, double* scratch) noexcept {
   transform_2d(false, psi, in, out, scratch);
 }
-COMPUEYE_MULTIVERSION void dct_inverse(const Dct2d<float>& psi, const float* in, float* out, float* scratch) noexcept {
+void dct_inverse(const Dct2d<float>& psi, const float* in, float* out, float* scratch) noexcept {
   transform_2d(true, psi, in, out, scratch);
 }
-COMPUEYE_MULTIVERSION void dct_inverse(const Dct2d<double>& psi, const double* in, double* out,
-                                       double* scratch) noexcept {
+void dct_inverse(const Dct2d<double>& psi, const double* in, double* out, double* scratch) noexcept {
   transform_2d(true, psi, in, out, scratch);
 }
 

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "recon/core/crew.hpp"
+
 namespace compueye::recon::core {
 
 /// Orthonormal DCT-II of one length, any length, as tables that somebody else owns (made by recon/dct_tables.hpp).
@@ -56,9 +58,10 @@ template <class T>
 struct Dct2d {
   DctTable<T> rows;  ///< table of length = number of rows, applied down the columns
   DctTable<T> cols;
+  Crew crew = {};  ///< shares strips of 16 columns, then of 16 rows
 };
 
-/// Elements of T that the transforms want as scratch for pictures up to rows x cols.
+/// Elements of T that the transforms want as scratch for pictures up to rows x cols, times the workers that share them.
 [[nodiscard]] constexpr std::size_t dct_scratch_size(std::size_t rows, std::size_t cols) noexcept {
   const std::size_t longest = rows > cols ? rows : cols;
   return 4 * longest * 16;

@@ -162,27 +162,56 @@ COMPUEYE_INLINE void adjoint_bands(const DenseRuns<T>& a, const T* y, T* __restr
 }
 
 template <class T>
-COMPUEYE_INLINE void forward_of(const DenseRuns<T>& a, const T* x, T* y) {
+COMPUEYE_INLINE void forward_of(const DenseRuns<T>& a, const T* x, T* y, std::size_t begin, std::size_t end) {
   switch (a.stored) {
     case RunValues::full:
-      return forward_blocks<FullValues<T>>(a, x, y, 0, a.blocks);
+      return forward_blocks<FullValues<T>>(a, x, y, begin, end);
     case RunValues::bf16:
-      return forward_blocks<Bf16Values<T>>(a, x, y, 0, a.blocks);
+      return forward_blocks<Bf16Values<T>>(a, x, y, begin, end);
     case RunValues::int8:
-      return forward_blocks<Int8Values<T>>(a, x, y, 0, a.blocks);
+      return forward_blocks<Int8Values<T>>(a, x, y, begin, end);
   }
 }
 
 template <class T>
-COMPUEYE_INLINE void adjoint_of(const DenseRuns<T>& a, const T* y, T* x) {
+COMPUEYE_INLINE void adjoint_of(const DenseRuns<T>& a, const T* y, T* x, std::size_t begin, std::size_t end) {
   switch (a.stored) {
     case RunValues::full:
-      return adjoint_bands<FullValues<T>>(a, y, x, 0, a.bands);
+      return adjoint_bands<FullValues<T>>(a, y, x, begin, end);
     case RunValues::bf16:
-      return adjoint_bands<Bf16Values<T>>(a, y, x, 0, a.bands);
+      return adjoint_bands<Bf16Values<T>>(a, y, x, begin, end);
     case RunValues::int8:
-      return adjoint_bands<Int8Values<T>>(a, y, x, 0, a.bands);
+      return adjoint_bands<Int8Values<T>>(a, y, x, begin, end);
   }
+}
+
+COMPUEYE_MULTIVERSION void forward_part(const DenseRuns<float>& a, const float* x, float* y, std::size_t begin,
+                                        std::size_t end) noexcept {
+  forward_of(a, x, y, begin, end);
+}
+COMPUEYE_MULTIVERSION void forward_part(const DenseRuns<double>& a, const double* x, double* y, std::size_t begin,
+                                        std::size_t end) noexcept {
+  forward_of(a, x, y, begin, end);
+}
+COMPUEYE_MULTIVERSION void adjoint_part(const DenseRuns<float>& a, const float* y, float* x, std::size_t begin,
+                                        std::size_t end) noexcept {
+  adjoint_of(a, y, x, begin, end);
+}
+COMPUEYE_MULTIVERSION void adjoint_part(const DenseRuns<double>& a, const double* y, double* x, std::size_t begin,
+                                        std::size_t end) noexcept {
+  adjoint_of(a, y, x, begin, end);
+}
+
+template <class T>
+void shared_forward(const DenseRuns<T>& a, const T* x, T* y, const Crew& crew) noexcept {
+  crew.share(a.blocks, flops(a),
+             [&](std::size_t, std::size_t begin, std::size_t end) { forward_part(a, x, y, begin, end); });
+}
+
+template <class T>
+void shared_adjoint(const DenseRuns<T>& a, const T* y, T* x, const Crew& crew) noexcept {
+  crew.share(a.bands, flops(a),
+             [&](std::size_t, std::size_t begin, std::size_t end) { adjoint_part(a, y, x, begin, end); });
 }
 
 template <class T>
@@ -214,17 +243,17 @@ std::size_t flops(const DenseRuns<double>& a) noexcept {
   return flops_of(a);
 }
 
-COMPUEYE_MULTIVERSION void forward(const DenseRuns<float>& a, const float* x, float* y) noexcept {
-  forward_of(a, x, y);
+void forward(const DenseRuns<float>& a, const float* x, float* y, const Crew& crew) noexcept {
+  shared_forward(a, x, y, crew);
 }
-COMPUEYE_MULTIVERSION void forward(const DenseRuns<double>& a, const double* x, double* y) noexcept {
-  forward_of(a, x, y);
+void forward(const DenseRuns<double>& a, const double* x, double* y, const Crew& crew) noexcept {
+  shared_forward(a, x, y, crew);
 }
-COMPUEYE_MULTIVERSION void adjoint_accumulate(const DenseRuns<float>& a, const float* y, float* x) noexcept {
-  adjoint_of(a, y, x);
+void adjoint_accumulate(const DenseRuns<float>& a, const float* y, float* x, const Crew& crew) noexcept {
+  shared_adjoint(a, y, x, crew);
 }
-COMPUEYE_MULTIVERSION void adjoint_accumulate(const DenseRuns<double>& a, const double* y, double* x) noexcept {
-  adjoint_of(a, y, x);
+void adjoint_accumulate(const DenseRuns<double>& a, const double* y, double* x, const Crew& crew) noexcept {
+  shared_adjoint(a, y, x, crew);
 }
 
 }  // namespace compueye::recon::core

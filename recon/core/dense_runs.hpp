@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "recon/core/crew.hpp"
+
 namespace compueye::recon::core {
 
 /// How the entries of DenseRuns are held: as T, as bfloat16 (a float's upper half) or as whole numbers -127 .. 127
@@ -43,11 +45,11 @@ std::size_t flops(const DenseRuns<float>& a) noexcept;
 std::size_t flops(const DenseRuns<double>& a) noexcept;
 
 /// y = A x. Entry k of a group goes to lane k of 16, runs ascending; lanes are added as in core/vector_sums.hpp.
-void forward(const DenseRuns<float>& a, const float* x, float* y) noexcept;
-void forward(const DenseRuns<double>& a, const double* x, double* y) noexcept;
+void forward(const DenseRuns<float>& a, const float* x, float* y, const Crew& crew = {}) noexcept;
+void forward(const DenseRuns<double>& a, const double* x, double* y, const Crew& crew = {}) noexcept;
 
-/// x += A' y, rows ascending.
-void adjoint_accumulate(const DenseRuns<float>& a, const float* y, float* x) noexcept;
-void adjoint_accumulate(const DenseRuns<double>& a, const double* y, double* x) noexcept;
+/// x += A' y, rows ascending. Workers share blocks in the one and bands in the other.
+void adjoint_accumulate(const DenseRuns<float>& a, const float* y, float* x, const Crew& crew = {}) noexcept;
+void adjoint_accumulate(const DenseRuns<double>& a, const double* y, double* x, const Crew& crew = {}) noexcept;
 
 }  // namespace compueye::recon::core

@@ -6,9 +6,10 @@ namespace compueye::recon::core {
 namespace {
 
 template <class T>
-COMPUEYE_INLINE void forward_of(const T* __restrict x, std::size_t rows, std::size_t cols, T* __restrict d) {
+COMPUEYE_INLINE void forward_of(const T* __restrict x, std::size_t rows, std::size_t cols, T* __restrict d,
+                                std::size_t begin, std::size_t end) {
   T *right = d, *down = d + rows * cols;
-  for (std::size_t r = 0; r < rows; ++r) {
+  for (std::size_t r = begin; r < end; ++r) {
     const T* row = x + r * cols;
     for (std::size_t c = 0; c + 1 < cols; ++c) right[r * cols + c] = row[c + 1] - row[c];
     right[r * cols + cols - 1] = T(0);
@@ -21,9 +22,10 @@ COMPUEYE_INLINE void forward_of(const T* __restrict x, std::size_t rows, std::si
 }
 
 template <class T>
-COMPUEYE_INLINE void adjoint_of(const T* __restrict d, std::size_t rows, std::size_t cols, T* __restrict x) {
+COMPUEYE_INLINE void adjoint_of(const T* __restrict d, std::size_t rows, std::size_t cols, T* __restrict x,
+                                std::size_t begin, std::size_t end) {
   const T *right = d, *down = d + rows * cols;
-  for (std::size_t r = 0; r < rows; ++r) {
+  for (std::size_t r = begin; r < end; ++r) {
     T* row = x + r * cols;
     const T* steps = right + r * cols;
     row[0] = cols > 1 ? -steps[0] : T(0);
@@ -38,20 +40,48 @@ COMPUEYE_INLINE void adjoint_of(const T* __restrict d, std::size_t rows, std::si
   }
 }
 
+COMPUEYE_MULTIVERSION void difference_rows(const float* x, std::size_t rows, std::size_t cols, float* d,
+                                           std::size_t begin, std::size_t end) noexcept {
+  forward_of(x, rows, cols, d, begin, end);
+}
+COMPUEYE_MULTIVERSION void adjoint_rows(const float* d, std::size_t rows, std::size_t cols, float* x, std::size_t begin,
+                                        std::size_t end) noexcept {
+  adjoint_of(d, rows, cols, x, begin, end);
+}
+COMPUEYE_MULTIVERSION void difference_rows(const double* x, std::size_t rows, std::size_t cols, double* d,
+                                           std::size_t begin, std::size_t end) noexcept {
+  forward_of(x, rows, cols, d, begin, end);
+}
+COMPUEYE_MULTIVERSION void adjoint_rows(const double* d, std::size_t rows, std::size_t cols, double* x,
+                                        std::size_t begin, std::size_t end) noexcept {
+  adjoint_of(d, rows, cols, x, begin, end);
+}
+
+template <class T>
+void share_differences(const T* x, std::size_t rows, std::size_t cols, T* d, const Crew& crew) noexcept {
+  crew.share(rows, rows * cols,
+             [&](std::size_t, std::size_t begin, std::size_t end) { difference_rows(x, rows, cols, d, begin, end); });
+}
+
+template <class T>
+void share_adjoint(const T* d, std::size_t rows, std::size_t cols, T* x, const Crew& crew) noexcept {
+  crew.share(rows, rows * cols,
+             [&](std::size_t, std::size_t begin, std::size_t end) { adjoint_rows(d, rows, cols, x, begin, end); });
+}
+
 }  // namespace
 
-COMPUEYE_MULTIVERSION void differences(const float* x, std::size_t rows, std::size_t cols, float* d) noexcept {
-  forward_of(x, rows, cols, d);
+void differences(const float* x, std::size_t rows, std::size_t cols, float* d, const Crew& crew) noexcept {
+  share_differences(x, rows, cols, d, crew);
 }
-COMPUEYE_MULTIVERSION void differences(const double* x, std::size_t rows, std::size_t cols, double* d) noexcept {
-  forward_of(x, rows, cols, d);
+void differences_adjoint(const float* d, std::size_t rows, std::size_t cols, float* x, const Crew& crew) noexcept {
+  share_adjoint(d, rows, cols, x, crew);
 }
-COMPUEYE_MULTIVERSION void differences_adjoint(const float* d, std::size_t rows, std::size_t cols, float* x) noexcept {
-  adjoint_of(d, rows, cols, x);
+void differences(const double* x, std::size_t rows, std::size_t cols, double* d, const Crew& crew) noexcept {
+  share_differences(x, rows, cols, d, crew);
 }
-COMPUEYE_MULTIVERSION void differences_adjoint(const double* d, std::size_t rows, std::size_t cols,
-                                               double* x) noexcept {
-  adjoint_of(d, rows, cols, x);
+void differences_adjoint(const double* d, std::size_t rows, std::size_t cols, double* x, const Crew& crew) noexcept {
+  share_adjoint(d, rows, cols, x, crew);
 }
 
 }  // namespace compueye::recon::core

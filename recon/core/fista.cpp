@@ -53,9 +53,11 @@ class Fista {
     const bool pixels = problem_.psi.kind == BasisKind::identity && problem_.constrained;
     const T lo = pixels && problem_.lo > T(-1e30) ? problem_.lo : T(-1e30);
     const T hi = pixels && problem_.hi < T(1e30) ? problem_.hi : T(1e30);
-    for (std::size_t k = 0; k < n_; ++k) {
-      next_[k] = prox_l1_box(point_[k] + step * gradient_[k], step * problem_.lambda, lo, hi);
-    }
+    problem_.crew.share(n_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        next_[k] = prox_l1_box(point_[k] + step * gradient_[k], step * problem_.lambda, lo, hi);
+      }
+    });
     flush_tiny(next_, n_);
     const double moved = static_cast<double>(squared_distance(next_, point_, n_));
     const double size = static_cast<double>(dot(next_, next_, n_));

@@ -5,6 +5,7 @@
 
 #include "recon/core/basis.hpp"
 #include "recon/core/class_inverse.hpp"
+#include "recon/core/crew.hpp"
 #include "recon/core/deflated_step.hpp"
 #include "recon/core/frame_info.hpp"
 #include "recon/core/linear_operator.hpp"
@@ -55,9 +56,13 @@ struct FrameProblem {
   SingularModes<T> modes;         ///< for tsvd
   bool measure_gap = false;
   bool warm_start = false;  ///< pdhg: frames go on from the last one
-  OperatingPoint point;     ///< point.iterations = K
+  OperatingPoint point;  ///< point.iterations = K
+  Crew crew = {};        ///< for the passes over pixels and coefficients; operator, bases and inverse have theirs
 
   [[nodiscard]] std::size_t pixels() const noexcept { return a.cols; }
+
+  /// Hands the same crew to everything that can share its work. Before any workspace is measured.
+  void employ(const Crew& workers) noexcept { crew = a.crew = inverse.crew = psi.dct.crew = metric.dct.crew = workers; }
 };
 
 }  // namespace compueye::recon::core

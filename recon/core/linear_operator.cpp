@@ -21,8 +21,9 @@ COMPUEYE_INLINE T sparse_dot(const T* values, const std::int32_t* columns, const
 }
 
 template <class T>
-COMPUEYE_INLINE void csr_forward(const LinearOperator<T>& a, const T* x, T* y) {
-  for (std::size_t m = 0; m < a.rows; ++m) {
+COMPUEYE_INLINE void csr_forward(const LinearOperator<T>& a, const T* x, T* y, std::size_t begin_row,
+                                 std::size_t end_row) {
+  for (std::size_t m = begin_row; m < end_row; ++m) {
     const std::size_t begin = a.row_start[m];
     y[m] = sparse_dot(a.values + begin, a.columns + begin, x, a.row_start[m + 1] - begin);
   }
@@ -52,11 +53,13 @@ COMPUEYE_INLINE void accumulate_four(const T* __restrict a, std::size_t stride, 
   }
 }
 
-COMPUEYE_MULTIVERSION void csr_forward_clone(const LinearOperator<float>& a, const float* x, float* y) noexcept {
-  csr_forward(a, x, y);
+COMPUEYE_MULTIVERSION void csr_forward_clone(const LinearOperator<float>& a, const float* x, float* y,
+                                             std::size_t begin, std::size_t end) noexcept {
+  csr_forward(a, x, y, begin, end);
 }
-COMPUEYE_MULTIVERSION void csr_forward_clone(const LinearOperator<double>& a, const double* x, double* y) noexcept {
-  csr_forward(a, x, y);
+COMPUEYE_MULTIVERSION void csr_forward_clone(const LinearOperator<double>& a, const double* x, double* y,
+                                             std::size_t begin, std::size_t end) noexcept {
+  csr_forward(a, x, y, begin, end);
 }
 COMPUEYE_MULTIVERSION void four_rows(const float* a, std::size_t stride, const float* y, float* x,
                                      std::size_t n) noexcept {
@@ -73,17 +76,21 @@ void forward_of(const LinearOperator<T>& a, const T* x, T* y, T* scratch) noexce
     case OperatorKind::running_sums:
     case OperatorKind::running_sums_symmetric:
     case OperatorKind::running_sums_diagonal:
-      return forward(a.sums, x, y, scratch);
+      return forward(a.sums, x, y, scratch, a.crew);
     case OperatorKind::csr:
-      return csr_forward_clone(a, x, y);
+      return a.crew.share(a.rows, a.row_start[a.rows], [&](std::size_t, std::size_t begin, std::size_t end) {
+        csr_forward_clone(a, x, y, begin, end);
+      });
     case OperatorKind::dense_runs:
     case OperatorKind::dense_runs_bf16:
     case OperatorKind::dense_runs_int8:
-      return forward(a.runs, x, y);
+      return forward(a.runs, x, y, a.crew);
     case OperatorKind::dense:
       break;
   }
-  for (std::size_t m = 0; m < a.rows; ++m) y[m] = dot(a.values + m * a.cols, x, a.cols);
+  a.crew.share(a.rows, a.rows * a.cols, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t m = begin; m < end; ++m) y[m] = dot(a.values + m * a.cols, x, a.cols);
+  });
 }
 
 template <class T>
@@ -92,19 +99,23 @@ void adjoint_of(const LinearOperator<T>& a, const T* y, T* x, T* scratch) noexce
     case OperatorKind::running_sums:
     case OperatorKind::running_sums_symmetric:
     case OperatorKind::running_sums_diagonal:
-      return adjoint_accumulate(a.sums, y, x, scratch);
+      return adjoint_accumulate(a.sums, y, x, scratch, a.crew);
     case OperatorKind::csr:
       return csr_adjoint(a, y, x);
     case OperatorKind::dense_runs:
     case OperatorKind::dense_runs_bf16:
     case OperatorKind::dense_runs_int8:
-      return adjoint_accumulate(a.runs, y, x);
+      return adjoint_accumulate(a.runs, y, x, a.crew);
     case OperatorKind::dense:
       break;
   }
-  std::size_t m = 0;
-  for (; m + 4 <= a.rows; m += 4) four_rows(a.values + m * a.cols, a.cols, y + m, x, a.cols);
-  for (; m < a.rows; ++m) accumulate(a.values + m * a.cols, y[m], x, a.cols);
+  a.crew.share(a.cols, a.rows * a.cols, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::size_t m = 0;
+    for (; m + 4 <= a.rows; m += 4) {
+      four_rows(a.values + m * a.cols + begin, a.cols, y + m, x + begin, end - begin);
+    }
+    for (; m < a.rows; ++m) accumulate(a.values + m * a.cols + begin, y[m], x + begin, end - begin);
+  });
 }
 
 template <class T>

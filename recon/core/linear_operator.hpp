@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "recon/core/crew.hpp"
 #include "recon/core/dense_runs.hpp"
 #include "recon/core/frame_info.hpp"
 #include "recon/core/running_sums.hpp"
@@ -22,6 +23,7 @@ struct LinearOperator {
   const std::int32_t* columns = nullptr;
   RunningSums<T> sums = {};
   DenseRuns<T> runs = {};
+  Crew crew = {};  ///< that shares the work, but for the adjoint of csr
 
   /// Elements of T that forward() and adjoint_accumulate() want as scratch; none but for running sums.
   [[nodiscard]] std::size_t scratch_size() const noexcept { return sums.tables == 0 ? 0 : sums.scratch_size(); }

@@ -7,7 +7,9 @@ void apply_inverse(const Metric<T>& metric, T* x, T* coefficients, T* scratch) n
   if (metric.is_identity()) return;
   dct_forward(metric.dct, x, coefficients, scratch);
   const std::size_t n = metric.dct.rows.length * metric.dct.cols.length;
-  for (std::size_t k = 0; k < n; ++k) coefficients[k] *= metric.inverse_eigenvalues[k];
+  metric.dct.crew.share(n, n, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) coefficients[k] *= metric.inverse_eigenvalues[k];
+  });
   dct_inverse(metric.dct, coefficients, x, scratch);
 }
 

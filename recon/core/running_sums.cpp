@@ -165,31 +165,59 @@ COMPUEYE_INLINE void clear_sums(const RunningSums<T>& a, T* sums, std::size_t be
   for (std::size_t k = begin * row; k < end * row; ++k) sums[k] = T(0);
 }
 
+/// The steps of A x and A' y, each over a range of folded rows, tables or bands that is independent of the others.
+enum class Step { outward, taps, scatter, inward, inward_transposed };
+
 template <class T>
-COMPUEYE_INLINE void forward_of(const RunningSums<T>& a, const T* x, T* y, T* scratch) {
-  if (a.rows_at_once == 8) {
-    sum_outward<8>(a, x, scratch, 0, a.half_rows());
-    return forward_symmetric<8>(a, scratch, y, 0, a.tables);
+COMPUEYE_INLINE void step_of(Step step, const RunningSums<T>& a, const T* in, T* out, std::size_t begin,
+                             std::size_t end) {
+  switch (step) {
+    case Step::outward:
+      if (a.rows_at_once == 8) return sum_outward<8>(a, in, out, begin, end);
+      return sum_outward<4>(a, in, out, begin, end);
+    case Step::taps:
+      if (a.rows_at_once == 8) return forward_symmetric<8>(a, in, out, begin, end);
+      if (a.rows_at_once == 4) return forward_symmetric<4>(a, in, out, begin, end);
+      return forward_each(a, in, out, begin, end);
+    case Step::scatter:
+      clear_sums(a, out, a.band_row[begin], a.band_row[end]);
+      if (a.rows_at_once == 8) return adjoint_symmetric<8>(a, in, out, begin, end);
+      if (a.rows_at_once == 4) return adjoint_symmetric<4>(a, in, out, begin, end);
+      return adjoint_each(a, in, out, begin, end);
+    case Step::inward:
+      if (a.rows_at_once == 8) return sum_inward<8>(a, in, out, begin, end);
+      return sum_inward<4>(a, in, out, begin, end);
+    case Step::inward_transposed:
+      return sum_inward_transposed(a, in, out, begin, end);
   }
-  sum_outward<4>(a, x, scratch, 0, a.half_rows());
-  if (a.rows_at_once == 4) return forward_symmetric<4>(a, scratch, y, 0, a.tables);
-  forward_each(a, scratch, y, 0, a.tables);
+}
+
+COMPUEYE_MULTIVERSION void do_step(Step step, const RunningSums<float>& a, const float* in, float* out,
+                                   std::size_t begin, std::size_t end) noexcept {
+  step_of(step, a, in, out, begin, end);
+}
+COMPUEYE_MULTIVERSION void do_step(Step step, const RunningSums<double>& a, const double* in, double* out,
+                                   std::size_t begin, std::size_t end) noexcept {
+  step_of(step, a, in, out, begin, end);
 }
 
 template <class T>
-COMPUEYE_INLINE void adjoint_of(const RunningSums<T>& a, const T* y, T* x, T* scratch) {
-  clear_sums(a, scratch, 0, a.half_rows());
-  if (a.rows_at_once == 8) {
-    adjoint_symmetric<8>(a, y, scratch, 0, a.bands);
-    sum_inward<8>(a, scratch, x, 0, a.half_rows());
-    return sum_inward_transposed(a, scratch, x, 0, a.half_rows());
-  }
-  if (a.rows_at_once == 4) {
-    adjoint_symmetric<4>(a, y, scratch, 0, a.bands);
-  } else {
-    adjoint_each(a, y, scratch, 0, a.bands);
-  }
-  sum_inward<4>(a, scratch, x, 0, a.half_rows());
+void share_step(Step step, const RunningSums<T>& a, const T* in, T* out, std::size_t parts, const Crew& crew) noexcept {
+  crew.share(parts, a.image_rows * a.image_cols,
+             [&](std::size_t, std::size_t begin, std::size_t end) { do_step(step, a, in, out, begin, end); });
+}
+
+template <class T>
+void forward_of(const RunningSums<T>& a, const T* x, T* y, T* scratch, const Crew& crew) noexcept {
+  share_step(Step::outward, a, x, scratch, a.half_rows(), crew);
+  share_step(Step::taps, a, scratch, y, a.tables, crew);
+}
+
+template <class T>
+void adjoint_of(const RunningSums<T>& a, const T* y, T* x, T* scratch, const Crew& crew) noexcept {
+  share_step(Step::scatter, a, y, scratch, a.bands, crew);
+  share_step(Step::inward, a, scratch, x, a.half_rows(), crew);
+  if (a.rows_at_once == 8) share_step(Step::inward_transposed, a, scratch, x, a.half_rows(), crew);
 }
 
 template <class T>
@@ -220,19 +248,19 @@ std::size_t flops(const RunningSums<double>& a) noexcept {
   return flops_of(a);
 }
 
-COMPUEYE_MULTIVERSION void forward(const RunningSums<float>& a, const float* x, float* y, float* scratch) noexcept {
-  forward_of(a, x, y, scratch);
+void forward(const RunningSums<float>& a, const float* x, float* y, float* scratch, const Crew& crew) noexcept {
+  forward_of(a, x, y, scratch, crew);
 }
-COMPUEYE_MULTIVERSION void forward(const RunningSums<double>& a, const double* x, double* y, double* scratch) noexcept {
-  forward_of(a, x, y, scratch);
+void forward(const RunningSums<double>& a, const double* x, double* y, double* scratch, const Crew& crew) noexcept {
+  forward_of(a, x, y, scratch, crew);
 }
-COMPUEYE_MULTIVERSION void adjoint_accumulate(const RunningSums<float>& a, const float* y, float* x,
-                                              float* scratch) noexcept {
-  adjoint_of(a, y, x, scratch);
+void adjoint_accumulate(const RunningSums<float>& a, const float* y, float* x, float* scratch,
+                        const Crew& crew) noexcept {
+  adjoint_of(a, y, x, scratch, crew);
 }
-COMPUEYE_MULTIVERSION void adjoint_accumulate(const RunningSums<double>& a, const double* y, double* x,
-                                              double* scratch) noexcept {
-  adjoint_of(a, y, x, scratch);
+void adjoint_accumulate(const RunningSums<double>& a, const double* y, double* x, double* scratch,
+                        const Crew& crew) noexcept {
+  adjoint_of(a, y, x, scratch, crew);
 }
 
 }  // namespace compueye::recon::core

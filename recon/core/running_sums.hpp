@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "recon/core/crew.hpp"
+
 namespace compueye::recon::core {
 
 /// A = D S for receptive fields that are one run of coverages on every pixel row. S are running sums along each half
@@ -46,12 +48,14 @@ std::size_t bytes(const RunningSums<double>& a) noexcept;
 std::size_t flops(const RunningSums<float>& a) noexcept;
 std::size_t flops(const RunningSums<double>& a) noexcept;
 
-/// y = A x
-void forward(const RunningSums<float>& a, const float* x, float* y, float* scratch) noexcept;
-void forward(const RunningSums<double>& a, const double* x, double* y, double* scratch) noexcept;
+/// y = A x. Workers share folded rows, then tables.
+void forward(const RunningSums<float>& a, const float* x, float* y, float* scratch, const Crew& crew = {}) noexcept;
+void forward(const RunningSums<double>& a, const double* x, double* y, double* scratch, const Crew& crew = {}) noexcept;
 
-/// x += A' y
-void adjoint_accumulate(const RunningSums<float>& a, const float* y, float* x, float* scratch) noexcept;
-void adjoint_accumulate(const RunningSums<double>& a, const double* y, double* x, double* scratch) noexcept;
+/// x += A' y. Workers share bands, then folded rows.
+void adjoint_accumulate(const RunningSums<float>& a, const float* y, float* x, float* scratch,
+                        const Crew& crew = {}) noexcept;
+void adjoint_accumulate(const RunningSums<double>& a, const double* y, double* x, double* scratch,
+                        const Crew& crew = {}) noexcept;
 
 }  // namespace compueye::recon::core

@@ -40,13 +40,19 @@ COMPUEYE_INLINE void strip_product(const T* c, std::size_t row_step, std::size_t
   }
 }
 
+/// Strips that `count` columns or rows make.
+[[nodiscard]] constexpr std::size_t strips_of(std::size_t count) noexcept {
+  return (count + lanes - 1) / lanes;
+}
+
 /// Runs `transform(strip, result, work)` down every column of the upper left rows x cols part of a picture whose rows
-/// are `pitch` apart. `scratch` holds three strips of `rows` rows.
+/// are `pitch` apart, in strips begin .. end-1 of strips_of(cols). `scratch` holds three strips of `rows` rows.
 template <class T, class Transform>
 COMPUEYE_INLINE void along_columns(std::size_t rows, std::size_t cols, std::size_t pitch, const T* in, T* out,
-                                   T* scratch, Transform transform) {
+                                   T* scratch, std::size_t begin, std::size_t end, Transform transform) {
   T *strip = scratch, *result = scratch + rows * lanes, *work = scratch + 2 * rows * lanes;
-  for (std::size_t first = 0; first < cols; first += lanes) {
+  for (std::size_t s = begin; s < end; ++s) {
+    const std::size_t first = s * lanes;
     const std::size_t width = cols - first < lanes ? cols - first : lanes;
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t l = 0; l < width; ++l) strip[r * lanes + l] = in[r * pitch + first + l];
@@ -59,12 +65,13 @@ COMPUEYE_INLINE void along_columns(std::size_t rows, std::size_t cols, std::size
   }
 }
 
-/// The same along every row.
+/// The same along every row, in strips of strips_of(rows).
 template <class T, class Transform>
 COMPUEYE_INLINE void along_rows(std::size_t rows, std::size_t cols, std::size_t pitch, const T* in, T* out, T* scratch,
-                                Transform transform) {
+                                std::size_t begin, std::size_t end, Transform transform) {
   T *strip = scratch, *result = scratch + cols * lanes, *work = scratch + 2 * cols * lanes;
-  for (std::size_t first = 0; first < rows; first += lanes) {
+  for (std::size_t s = begin; s < end; ++s) {
+    const std::size_t first = s * lanes;
     const std::size_t height = rows - first < lanes ? rows - first : lanes;
     for (std::size_t c = 0; c < cols; ++c) {
       for (std::size_t l = 0; l < height; ++l) strip[c * lanes + l] = in[(first + l) * pitch + c];
@@ -75,6 +82,18 @@ COMPUEYE_INLINE void along_rows(std::size_t rows, std::size_t cols, std::size_t 
       for (std::size_t l = 0; l < height; ++l) out[(first + l) * pitch + c] = result[c * lanes + l];
     }
   }
+}
+
+template <class T, class Transform>
+COMPUEYE_INLINE void along_columns(std::size_t rows, std::size_t cols, std::size_t pitch, const T* in, T* out,
+                                   T* scratch, Transform transform) {
+  along_columns(rows, cols, pitch, in, out, scratch, std::size_t{0}, strips_of(cols), transform);
+}
+
+template <class T, class Transform>
+COMPUEYE_INLINE void along_rows(std::size_t rows, std::size_t cols, std::size_t pitch, const T* in, T* out, T* scratch,
+                                Transform transform) {
+  along_rows(rows, cols, pitch, in, out, scratch, std::size_t{0}, strips_of(rows), transform);
 }
 
 }  // namespace compueye::recon::core

@@ -20,7 +20,8 @@ WeightedStep<T>::WeightedStep(const FrameProblem<T>& problem, Workspace& workspa
   if (problem.metric.is_identity()) return;
   smooth_ = workspace.take<T>(problem.pixels());
   coefficients_ = workspace.take<T>(problem.pixels());
-  scratch_ = workspace.take<T>(dct_scratch_size(problem.image_rows, problem.image_cols));
+  scratch_ =
+      workspace.take<T>(dct_scratch_size(problem.image_rows, problem.image_cols) * problem.metric.dct.crew.workers);
 }
 
 template <class T>

@@ -51,6 +51,7 @@ struct ReconstructionSettings {
   double relaxation = 0.0;       ///< 0 < relaxation < 2
   bool warm_start = false;
   std::optional<recon::OperatorKind> op;  ///< absent: the quickest that keeps every digit
+  int threads = 1;                        ///< 1 .. recon::WorkerThreads::most
 };
 
 struct SceneSettings {

@@ -103,6 +103,13 @@ std::vector<KeySpec> solver_keys() {
        .fallback = V{std::string("cold")},
        .meaning = "warm, with pdhg: a frame goes on from the last one, unless it has changed too much",
        .store = [](Board& b, const V& v) { b.reconstruction.warm_start = text_of(v) == "warm"; }},
+      {.section = "reconstruction",
+       .name = "threads",
+       .type = whole,
+       .range = {1, 64},
+       .fallback = V{std::int64_t{1}},
+       .meaning = "that share a frame's work; pictures are the same bit for bit",
+       .store = [](Board& b, const V& v) { b.reconstruction.threads = whole_of(v); }},
   };
 }
 

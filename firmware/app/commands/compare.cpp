@@ -32,6 +32,7 @@ void add_contenders(CLI::App& command, CompareOptions& o) {
   command.add_option("--iterations", o.iterations,
                      "of every solver (default: the board's for admm and adm, which have a factor, ten times that for "
                      "the others)");
+  command.add_option("--threads", o.threads, "that share a frame's work (default: the board's); the same pictures");
   command.add_option("--lambda", o.lambda, "for every solver and basis (default: by rule, from sigma)");
 }
 

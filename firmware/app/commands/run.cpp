@@ -48,6 +48,7 @@ void add_solver_options(CLI::App& command, RunOptions& o) {
                      "ms from the start of exposure to the published picture: as many iterations as fit are used, by "
                      "timing real solves first, and later pictures are counted");
   command.add_option("--iterations", o.iterations, "a frame (default: the board's); with --deadline the most");
+  command.add_option("--threads", o.threads, "that share a frame's work (default: the board's); the same pictures");
   auto* lambda = command.add_option("--lambda", o.lambda, "weight of the penalty, by hand");
   command.add_option("--sigma", o.sigma, "noise of one sample in white pixels, for lambda by rule")->excludes(lambda);
 }

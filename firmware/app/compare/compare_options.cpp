@@ -9,6 +9,7 @@
 #include "firmware/app/report/nearest_name.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
+#include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -56,6 +57,10 @@ Result<void> CompareOptions::check() const {
       .and_then([&] {
         return need(!iterations || (*iterations >= 1 && *iterations <= 1'000'000), "--iterations",
                     fmt::format("is {}, expected 1 to 1000000", iterations.value_or(0)));
+      })
+      .and_then([&] {
+        return need(!threads || (*threads >= 1 && *threads <= recon::WorkerThreads::most), "--threads",
+                    fmt::format("is {}, expected 1 to {}", threads.value_or(0), recon::WorkerThreads::most));
       });
 }
 

@@ -22,6 +22,7 @@ struct CompareOptions {
   std::optional<double> sigma;
   std::optional<double> lambda;
   std::optional<std::int64_t> iterations;
+  std::optional<std::int64_t> threads;
   std::vector<std::string> solvers;  ///< empty: all
   std::vector<std::string> bases;    ///< empty: all
   std::string constraint;            ///< empty: the board's

@@ -71,6 +71,7 @@ class Runner {
     if (options_.iterations) plan.iterations = static_cast<int>(*options_.iterations);
     plan.relaxation = board_.reconstruction.relaxation;
     plan.op = op_;
+    plan.threads = options_.threads ? static_cast<int>(*options_.threads) : board_.reconstruction.threads;
     // The board's rho was chosen for the board's metric, and is no step of pdhg.
     const bool penalised = contender.solver == recon::SolverKind::admm || contender.solver == recon::SolverKind::adm;
     if (penalised && recon::metric_of(contender.basis) == recon::metric_of(board_.reconstruction.basis)) {

@@ -39,6 +39,7 @@ recon::Plan plan_of(const Board& board, const EyeRequest& request, std::int64_t 
   plan.relaxation = board.reconstruction.relaxation;
   plan.op = board.reconstruction.op;
   plan.warm_start = board.reconstruction.warm_start;
+  plan.threads = request.threads.value_or(board.reconstruction.threads);
   // As many as the correction lets pass, so that no usable frame is too much for the solver.
   plan.max_reweighted =
       static_cast<int>(std::ceil(board.sensor.max_missing_share * static_cast<double>(seeing) + 1e-9));

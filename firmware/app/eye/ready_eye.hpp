@@ -19,7 +19,8 @@ struct EyeRequest {
   std::optional<int> iterations;
   std::optional<double> lambda;  ///< by hand
   std::optional<double> sigma;   ///< of one sample, for the rule; wins over a lambda that the board states
-  std::filesystem::path cache;   ///< where what takes long is kept; empty: nowhere
+  std::optional<int> threads;
+  std::filesystem::path cache;  ///< where what takes long is kept; empty: nowhere
 };
 
 /// Where lambda came from.

@@ -10,6 +10,7 @@
 #include "firmware/app/board/reconstruction_names.hpp"
 #include "firmware/app/options/option_checks.hpp"
 #include "firmware/app/reconstruct/solver_options.hpp"
+#include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -135,6 +136,9 @@ void add_plan(CLI::App& command, ReconstructOptions& o) {
                   "dense-runs, dense-runs-bf16 or dense-runs-int8, which round the response")
       ->type_name("NAME")
       ->check(one_of(operator_words(), {}));
+  command.add_option("--threads", o.threads, "that share a frame's work (default 1); the picture is the same")
+      ->type_name("T")
+      ->check(whole_number(1, recon::WorkerThreads::most));
   command.add_flag("--as-published", o.as_published,
                    "adm as YALL1 v1.4 does it, for comparison: it may stop where there is no solution");
   command.add_flag("--json", o.json, "print one object with every figure");
@@ -211,6 +215,7 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
   if (o.as_published) problem.plan.solver = recon::SolverKind::adm_as_published;
   problem.plan.warm_start = o.start == "warm";
   if (o.op != "auto") problem.plan.op = kind_named(operator_names(), o.op);
+  problem.plan.threads = o.threads;
   problem.plan.rank = o.rank.value_or(0);
   problem.plan.l1_reweighting = o.reweight.value_or(0.0);
   problem.plan.measure_gap = true;

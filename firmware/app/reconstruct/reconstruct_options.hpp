@@ -24,6 +24,7 @@ struct ReconstructOptions {
   std::string precision = "f32";
   std::string start = "cold";
   std::string op = "auto";
+  int threads = 1;
   std::string box;  ///< "LO,HI", empty: no box
   bool nonnegative = false;
   std::optional<int> iterations;

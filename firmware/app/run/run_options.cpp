@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "recon/worker_threads.hpp"
+
 namespace compueye::firmware {
 namespace {
 
@@ -38,8 +40,9 @@ Result<void> RunOptions::check() const {
         within("--scene-seed", std::optional(scene_seed), 0, false, 9e18),
         within("--distance", distance_mm, 0, true, longest_mm),
         within("--scene-distance", scene_distance_mm, 0, true, longest_mm),
-        within("--iterations", iterations, 1, false, most_iterations), within("--lambda", lambda, 0, false, largest),
-        within("--sigma", sigma, 0, false, largest),
+        within("--iterations", iterations, 1, false, most_iterations),
+        within("--threads", threads, 1, false, recon::WorkerThreads::most),
+        within("--lambda", lambda, 0, false, largest), within("--sigma", sigma, 0, false, largest),
         need(!(lambda && sigma), "--sigma", "cannot go with --lambda: the noise is what lambda would be made from"),
         need(!(deadline_ms && lossless), "--deadline",
              "cannot go with --lossless, where frames wait for as long as it takes; leave one of them out"),

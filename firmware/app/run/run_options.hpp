@@ -27,6 +27,7 @@ struct RunOptions {
   std::optional<bool> show;                 ///< absent: when stdout is a terminal
   bool lossless = false;
   std::optional<std::int64_t> iterations;
+  std::optional<std::int64_t> threads;
   std::optional<double> lambda;
   std::optional<double> sigma;
   std::filesystem::path sheet;

@@ -117,7 +117,8 @@ Result<void> RunSession::make_eye() {
       progress.update(what, done, total);
       return !signals_.requested().load(std::memory_order_relaxed);
     };
-    EyeRequest request{std::nullopt, options_.lambda, options_.sigma, board_.folder / ".cache"};
+    EyeRequest request{std::nullopt, options_.lambda, options_.sigma, std::nullopt, board_.folder / ".cache"};
+    if (options_.threads) request.threads = static_cast<int>(*options_.threads);
     if (options_.iterations) request.iterations = static_cast<int>(*options_.iterations);
     auto eye = ReadyEye::make(board_, request, ask);
     if (!eye) return tl::unexpected(std::move(eye.error()));

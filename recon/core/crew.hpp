@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+
+namespace compueye::recon::core {
+
+/// Who does the frame path's work: by default whoever calls, or several workers that somebody else keeps (recon's
+/// WorkerThreads). Work is cut into parts, and worker w of n always does parts count*w/n .. count*(w+1)/n - 1. Parts
+/// write to places of their own, in the order of one worker alone: the bits are the same for any number of workers.
+struct Crew {
+  using Task = void (*)(void* data, std::size_t worker) noexcept;
+
+  std::size_t workers = 1;
+  void* context = nullptr;
+  /// Calls task(data, w) for w = 0 .. workers-1, at once or one after the other, and returns when all are done.
+  void (*run)(void* context, Task task, void* data) noexcept = nullptr;
+
+  /// Pictures of fewer pixels are done before the workers have met.
+  static constexpr std::size_t least_worth = 96 * 96;
+
+  /// Calls work(worker, begin, end) so that every part of 0 .. parts-1 is in one range; in this thread alone where
+  /// `size` elements are too few to be worth it. What a worker does must not depend on what another does in the same
+  /// call.
+  template <class Work>
+  void share(std::size_t parts, std::size_t size, const Work& work) const noexcept {
+    if (workers < 2 || size < least_worth) return work(std::size_t{0}, std::size_t{0}, parts);
+    Shared<Work> shared{&work, parts, workers};
+    run(context, &Shared<Work>::part, &shared);
+  }
+
+ private:
+  template <class Work>
+  struct Shared {
+    const Work* work;
+    std::size_t parts, workers;
+    static void part(void* data, std::size_t worker) noexcept {
+      const auto& shared = *static_cast<const Shared*>(data);
+      const std::size_t begin = shared.parts * worker / shared.workers;
+      const std::size_t end = shared.parts * (worker + 1) / shared.workers;
+      if (begin < end) (*shared.work)(worker, begin, end);
+    }
+  };
+};
+
+}  // namespace compueye::recon::core
