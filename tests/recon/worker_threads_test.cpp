@@ -133,7 +133,7 @@ void check_solver(const Response& a, const recon::Objective& objective, const re
 }  // namespace
 
 TEST_CASE("every operator and basis has the same bits with one, two, three and five threads") {
-  const Response square = nominal(24), wide = nominal(8, side + 2), uneven = measured(6);
+  const Response square = nominal(32), wide = nominal(8, side + 2), uneven = measured(6);
   check_operator<float>(square, side, OperatorKind::running_sums, OperatorKind::running_sums_diagonal, BasisKind::dct);
   check_operator<double>(square, side, OperatorKind::running_sums, OperatorKind::running_sums_diagonal, BasisKind::tv);
   check_operator<float>(wide, side + 2, OperatorKind::running_sums, OperatorKind::running_sums_symmetric,

@@ -52,6 +52,7 @@ TEST_CASE("option values out of range name the value and what was expected") {
       {"--sigma 1 --rho 0", {"--rho", "'0'", "above 0"}},
       {"--sigma 1 --relaxation 2", {"--relaxation", "'2'", "below 2"}},
       {"--sigma 1 --precision f16", {"--precision", "'f16'", "f32, f64"}},
+      {"--sigma 1 --threads 0", {"--threads", "'0'", "1 to 64"}},
       {"--sigma 1 --operator int8", {"--operator", "'int8'", "dense-runs-int8"}},
       {"--sigma 1 --box 1,0", {"--box", "'1,0'", "lower first"}},
       {"--sigma 1 --box 1", {"--box", "'1'", "such as 0,1"}},

@@ -152,6 +152,16 @@ TEST_CASE("the operator is the one asked for, by rule the one that suits the res
   }
 }
 
+TEST_CASE("threads change nothing of the picture") {
+  const TemporaryFolder folder;
+  put_frames(folder, 1);
+  const std::string settings = std::string(small_eye) + "--sigma 0.002 --box 0,1 --iterations 20 --json ";
+  const auto alone = json_from(settings + "--out one.npy", folder.path());
+  const auto shared = json_from(settings + "--threads 3 --out three.npy", folder.path());
+  CHECK(pictures_in(folder / "one.npy") == pictures_in(folder / "three.npy"));
+  CHECK(alone["median_objective"] == shared["median_objective"]);
+}
+
 TEST_CASE("the report has every figure") {
   const TemporaryFolder folder;
   put_frames(folder, 2);
