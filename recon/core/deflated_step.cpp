@@ -93,7 +93,10 @@ void apply_to_images(const DeflatedStep<T>& f, const T* x, T* y, T* scratch) noe
     in[2 * places + p] = c;
     in[3 * places + p] = d;
   }
-  for (std::size_t c = 0; c < 4; ++c) step_class(f.parts[c], in + c * places, t);
+  const std::size_t apart = (f.scratch_size() - f.order) / 4;
+  f.crew.share(4, f.order * apart, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) step_class(f.parts[c], in + c * places, t + c * apart);
+  });
   for (std::size_t p = 0; p < places; ++p) {
     const std::int32_t* rows = f.images + 4 * p;
     T a = in[p], b = in[places + p], c = in[2 * places + p], d = in[3 * places + p];

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "recon/core/crew.hpp"
+
 namespace compueye::recon::core {
 
 /// The dual step of a primal-dual method whose metric knows the leading modes of A:
@@ -37,12 +39,13 @@ struct DeflatedStep {
   /// takes half the row of image g with the sign of (-1)^(number of bits that c and g share). Else null.
   const std::int32_t* images = nullptr;
   Part parts[4];
+  Crew crew = {};  ///< shares classes where every row has three mirror images
 
   /// Elements of T that apply() and restrict_to() want as scratch.
   [[nodiscard]] std::size_t scratch_size() const noexcept {
     std::size_t most = 0;
     for (std::size_t c = 0; c < classes; ++c) most = parts[c].columns() > most ? parts[c].columns() : most;
-    return order + most;
+    return order + (images != nullptr ? classes : 1) * most;
   }
 };
 

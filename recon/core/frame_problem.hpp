@@ -62,7 +62,9 @@ struct FrameProblem {
   [[nodiscard]] std::size_t pixels() const noexcept { return a.cols; }
 
   /// Hands the same crew to everything that can share its work. Before any workspace is measured.
-  void employ(const Crew& workers) noexcept { crew = a.crew = inverse.crew = psi.dct.crew = metric.dct.crew = workers; }
+  void employ(const Crew& workers) noexcept {
+    crew = a.crew = inverse.crew = dual_step.crew = psi.dct.crew = metric.dct.crew = workers;
+  }
 };
 
 }  // namespace compueye::recon::core

@@ -46,7 +46,10 @@ class Pdhg {
     if (!info.warm) start_cold();
     for (int k = 1; k < problem_.point.iterations; ++k) {
       slope();
-      descend(gradient_, T(1) / problem_.rho, threshold_, lo_, hi_, problem_.relaxation, x_, ahead_, n_);
+      problem_.crew.share(n_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
+        descend(gradient_ + begin, T(1) / problem_.rho, threshold_, lo_, hi_, problem_.relaxation, x_ + begin,
+                ahead_ + begin, end - begin);
+      });
       rise();
     }
     finish(info);
@@ -76,7 +79,10 @@ class Pdhg {
     dual_step_.apply(ahead_, row_dual_);
     if (!sparse_basis_) return;
     analyse(problem_.psi, ahead_, coefficients_, scratch_);
-    ascend(coefficients_, problem_.basis_step, problem_.lambda, problem_.relaxation, basis_dual_, coefficient_count_);
+    problem_.crew.share(coefficient_count_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
+      ascend(coefficients_ + begin, problem_.basis_step, problem_.lambda, problem_.relaxation, basis_dual_ + begin,
+             end - begin);
+    });
   }
 
   /// The last iteration: its p, left in gradient_, is the answer.

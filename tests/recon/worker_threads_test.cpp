@@ -182,6 +182,9 @@ TEST_CASE("a symmetric eye's inverse by classes and reweighting have the same bi
     objective.basis = basis;
     check_solver(nominal(12), objective, plan);
   }
+  plan.solver = recon::SolverKind::pdhg;
+  check_solver(nominal(12), objective, plan);
+  plan.solver = recon::SolverKind::admm;
   objective.basis = BasisKind::identity;
   plan.l1_reweighting = 0.1;
   check_solver(nominal(12), objective, plan);

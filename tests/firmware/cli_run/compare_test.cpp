@@ -184,6 +184,7 @@ TEST_CASE("compare refuses what makes no sense before it works") {
   check_refused(board, {"--constraint", "positive"}, 2, {"--constraint", "'positive'", "nonnegative"});
   check_refused(board, {"--solvers", "tsvd", "--bases", "tv"}, 2, {"nothing to compare"});
   check_refused(board, {"--iterations", "0"}, 2, {"--iterations", "is 0"});
+  check_refused(board, {"--threads", "0"}, 2, {"--threads", "is 0", "1 to 64"});
   check_refused(board, {"--sigma", "-1"}, 2, {"--sigma", "is -1"});
   check_refused(board, {"--sheet", board.outside("no/such/folder.png").string()}, 1, {"folder"});
   const CopiedBoard narrow;

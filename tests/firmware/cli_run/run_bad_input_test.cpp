@@ -62,6 +62,7 @@ TEST_CASE("wrong usage ends with exit code 2 and names the option and the value"
   usage({"--sigma", "inf"}, {"--sigma", "inf"});
   usage({"--lambda", "1", "--sigma", "1"}, {"--lambda", "--sigma"});
   usage({"--iterations", "0"}, {"--iterations", "0"});
+  usage({"--threads", "65"}, {"--threads", "65", "1 to 64"});
   usage({"--distance", "-3"}, {"--distance"});
   usage({"--format", "npy"}, {"--format", "--out"});
   usage({"--format", "gif", "--out", "x"}, {"gif"});
