@@ -36,6 +36,12 @@ struct Fold {
 struct FoldedRow {
   std::ptrdiff_t first[4], step[4], count[4];
 
+  [[nodiscard]] COMPUEYE_INLINE std::ptrdiff_t in_all_lanes() const {
+    std::ptrdiff_t least = count[0];
+    for (std::size_t l = 1; l < 4; ++l) least = count[l] < least ? count[l] : least;
+    return least;
+  }
+
   /// Row r of the picture.
   COMPUEYE_INLINE static FoldedRow of(const Fold& f, std::ptrdiff_t r) {
     const std::ptrdiff_t upper = (f.above - 1 - r) * f.cols, lower = (f.above + r) * f.cols;
@@ -56,30 +62,128 @@ struct FoldedRow {
   }
 };
 
-/// sums[stride * c] = x summed from the centre line outward, for every c.
+template <class T>
+COMPUEYE_INLINE Four<T> load_four(const T* from) {
+  Four<T> v;
+  __builtin_memcpy(&v, from, sizeof(v));
+  return v;
+}
+
+template <class T>
+COMPUEYE_INLINE void store_four(const Four<T>& v, T* to) {
+  __builtin_memcpy(to, &v, sizeof(v));
+}
+
+/// Four numbers from `at` on, forward or backward, in that order.
+template <class T>
+COMPUEYE_INLINE Four<T> load_towards(const T* at, bool backward) {
+  if (!backward) return load_four(at);
+  const Four<T> v = load_four(at - 3);
+  return __builtin_shufflevector(v, v, 3, 2, 1, 0);
+}
+
+template <class T>
+COMPUEYE_INLINE void add_towards(const Four<T>& v, T* at, bool backward) {
+  T* to = backward ? at - 3 : at;
+  const Four<T> ordered = backward ? __builtin_shufflevector(v, v, 3, 2, 1, 0) : v;
+  store_four<T>(load_four(to) + ordered, to);
+}
+
+template <class T>
+COMPUEYE_INLINE void transpose(Four<T> (&v)[4]) {
+  const Four<T> a = __builtin_shufflevector(v[0], v[1], 0, 4, 1, 5),
+                b = __builtin_shufflevector(v[2], v[3], 0, 4, 1, 5);
+  const Four<T> c = __builtin_shufflevector(v[0], v[1], 2, 6, 3, 7),
+                d = __builtin_shufflevector(v[2], v[3], 2, 6, 3, 7);
+  v[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
+  v[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+  v[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
+  v[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
+}
+
+/// sums[stride * c] = x summed from the centre line outward, for every c of one row of the picture.
 template <std::size_t stride, class T>
-COMPUEYE_INLINE void sum_row_outward(const FoldedRow& row, std::ptrdiff_t count, const T* __restrict x,
-                                     T* __restrict sums) {
+COMPUEYE_INLINE void sum_row_outward(const Fold& fold, std::ptrdiff_t r, const T* __restrict x, T* __restrict sums) {
+  constexpr auto apart = static_cast<std::ptrdiff_t>(stride);
+  const FoldedRow row = FoldedRow::of(fold, r);
   Four<T> sum = {};
-  for (std::ptrdiff_t c = 0; c < count; ++c) {
+  std::ptrdiff_t c = 0;
+  for (; c + 4 <= row.in_all_lanes(); c += 4) {
+    Four<T> pixels[4];
+    for (std::size_t l = 0; l < 4; ++l) pixels[l] = load_towards(x + row.first[l] + c * row.step[l], l % 2 == 0);
+    transpose<T>(pixels);
+    for (std::ptrdiff_t k = 0; k < 4; ++k) {
+      sum += pixels[k];
+      store_four<T>(sum, sums + apart * (c + k));
+    }
+  }
+  for (; c < fold.half_cols; ++c) {
     Four<T> pixels;
     for (std::size_t l = 0; l < 4; ++l) pixels[l] = c < row.count[l] ? x[row.first[l] + c * row.step[l]] : T(0);
     sum += pixels;
-    __builtin_memcpy(sums + static_cast<std::ptrdiff_t>(stride) * c, &sum, sizeof(sum));
+    store_four<T>(sum, sums + apart * c);
   }
 }
 
-/// x += sums summed from the outside inward.
+/// x += sums summed from the outside inward, for one row of the picture.
 template <std::size_t stride, class T>
-COMPUEYE_INLINE void sum_row_inward(const FoldedRow& row, std::ptrdiff_t count, const T* __restrict sums,
-                                    T* __restrict x) {
+COMPUEYE_INLINE void sum_row_inward(const Fold& fold, std::ptrdiff_t r, const T* __restrict sums, T* __restrict x) {
+  constexpr auto apart = static_cast<std::ptrdiff_t>(stride);
+  const FoldedRow row = FoldedRow::of(fold, r);
+  const std::ptrdiff_t whole = row.in_all_lanes() / 4 * 4;
   Four<T> sum = {};
-  for (std::ptrdiff_t c = count; c-- > 0;) {
-    Four<T> here;
-    __builtin_memcpy(&here, sums + static_cast<std::ptrdiff_t>(stride) * c, sizeof(here));
-    sum += here;
+  std::ptrdiff_t c = fold.half_cols;
+  while (c > whole) {
+    --c;
+    sum += load_four(sums + apart * c);
     for (std::size_t l = 0; l < 4; ++l) {
       if (c < row.count[l]) x[row.first[l] + c * row.step[l]] += sum[l];
+    }
+  }
+  while (c > 0) {
+    c -= 4;
+    Four<T> rests[4];
+    for (std::ptrdiff_t k = 4; k-- > 0;) {
+      sum += load_four(sums + apart * (c + k));
+      rests[k] = sum;
+    }
+    transpose<T>(rests);
+    for (std::size_t l = 0; l < 4; ++l) add_towards<T>(rests[l], x + row.first[l] + c * row.step[l], l % 2 == 0);
+  }
+}
+
+/// The same for `count`, 1 or 4, rows r .. of the transposed picture, eight lanes apart and half_cols elements a row:
+/// the picture's columns are summed, four of them side by side.
+template <std::ptrdiff_t count, class T>
+COMPUEYE_INLINE void sum_columns_outward(const Fold& fold, std::ptrdiff_t r, const T* __restrict x,
+                                         T* __restrict sums) {
+  const FoldedRow row = FoldedRow::of_transposed(fold, r);
+  Four<T> sum[4] = {};
+  for (std::ptrdiff_t c = 0; c < fold.half_cols; ++c) {
+    for (std::size_t l = 0; l < 4; ++l) {
+      const T* at = x + row.first[l] + c * row.step[l];
+      if constexpr (count == 4) sum[l] += load_towards(at, l < 2);
+      if constexpr (count == 1) sum[l][0] += *at;
+    }
+    Four<T> turned[4] = {sum[0], sum[1], sum[2], sum[3]};
+    transpose<T>(turned);
+    for (std::ptrdiff_t k = 0; k < count; ++k) store_four<T>(turned[k], sums + 8 * (k * fold.half_cols + c));
+  }
+}
+
+template <std::ptrdiff_t count, class T>
+COMPUEYE_INLINE void sum_columns_inward(const Fold& fold, std::ptrdiff_t r, const T* __restrict sums, T* __restrict x) {
+  const FoldedRow row = FoldedRow::of_transposed(fold, r);
+  Four<T> sum[4] = {};
+  for (std::ptrdiff_t c = fold.half_cols; c-- > 0;) {
+    Four<T> turned[4] = {};
+    for (std::ptrdiff_t k = 0; k < count; ++k) turned[k] = load_four(sums + 8 * (k * fold.half_cols + c));
+    transpose<T>(turned);
+    for (std::size_t l = 0; l < 4; ++l) {
+      sum[l] += turned[l];
+      T* at = x + row.first[l] + c * row.step[l];
+      if constexpr (count == 4) add_towards<T>(sum[l], at, l < 2);
+      if constexpr (count == 1) *at += sum[l][0];
     }
   }
 }

@@ -45,13 +45,16 @@ COMPUEYE_INLINE Lanes<T, lane_count> flipped(Lanes<T, lane_count> v) {
 template <std::size_t lane_count, class T>
 COMPUEYE_INLINE void sum_outward(const RunningSums<T>& a, const T* x, T* sums, std::size_t begin, std::size_t end) {
   const Fold fold(a.image_rows, a.image_cols);
+  const std::size_t apart = lane_count * a.half_cols();
   for (std::size_t r = begin; r < end; ++r) {
-    const auto row = static_cast<std::ptrdiff_t>(r);
-    T* to = sums + lane_count * r * a.half_cols();
-    sum_row_outward<lane_count>(FoldedRow::of(fold, row), fold.half_cols, x, to);
-    if constexpr (lane_count == 8) {
-      sum_row_outward<lane_count>(FoldedRow::of_transposed(fold, row), fold.half_cols, x, to + 4);
+    sum_row_outward<lane_count>(fold, static_cast<std::ptrdiff_t>(r), x, sums + apart * r);
+  }
+  if constexpr (lane_count == 8) {
+    std::size_t r = begin;
+    for (; r + 4 <= end; r += 4) {
+      sum_columns_outward<4>(fold, static_cast<std::ptrdiff_t>(r), x, sums + apart * r + 4);
     }
+    for (; r < end; ++r) sum_columns_outward<1>(fold, static_cast<std::ptrdiff_t>(r), x, sums + apart * r + 4);
   }
 }
 
@@ -59,8 +62,7 @@ template <std::size_t lane_count, class T>
 COMPUEYE_INLINE void sum_inward(const RunningSums<T>& a, const T* sums, T* x, std::size_t begin, std::size_t end) {
   const Fold fold(a.image_rows, a.image_cols);
   for (std::size_t r = begin; r < end; ++r) {
-    sum_row_inward<lane_count>(FoldedRow::of(fold, static_cast<std::ptrdiff_t>(r)), fold.half_cols,
-                               sums + lane_count * r * a.half_cols(), x);
+    sum_row_inward<lane_count>(fold, static_cast<std::ptrdiff_t>(r), sums + lane_count * r * a.half_cols(), x);
   }
 }
 
@@ -68,10 +70,12 @@ template <class T>
 COMPUEYE_INLINE void sum_inward_transposed(const RunningSums<T>& a, const T* sums, T* x, std::size_t begin,
                                            std::size_t end) {
   const Fold fold(a.image_rows, a.image_cols);
-  for (std::size_t r = begin; r < end; ++r) {
-    sum_row_inward<8>(FoldedRow::of_transposed(fold, static_cast<std::ptrdiff_t>(r)), fold.half_cols,
-                      sums + 8 * r * a.half_cols() + 4, x);
+  const std::size_t apart = 8 * a.half_cols();
+  std::size_t r = begin;
+  for (; r + 4 <= end; r += 4) {
+    sum_columns_inward<4>(fold, static_cast<std::ptrdiff_t>(r), sums + apart * r + 4, x);
   }
+  for (; r < end; ++r) sum_columns_inward<1>(fold, static_cast<std::ptrdiff_t>(r), sums + apart * r + 4, x);
 }
 
 /// Sum of difference times running sum over taps begin .. end-1. Four partial sums, so that one addition need not wait
