@@ -11,6 +11,7 @@
 #include "recon/dual_step_tables.hpp"
 #include "recon/reconstructor.hpp"
 #include "recon/running_sum_tables.hpp"
+#include "recon/thin_step_tables.hpp"
 
 namespace compueye::recon {
 
@@ -22,6 +23,7 @@ struct OwnedTables {
   std::vector<std::int32_t> columns;
   RunningSumTables<T> sums;
   DualStepTables<T> dual_step;
+  ThinStepTables<T> thin_step;
   DenseRunTables<T> runs;
   std::vector<T> row_table;  // of the basis, or of the metric's DCT
   std::vector<T> col_table;
@@ -41,7 +43,7 @@ struct OwnedTables {
             dual_steps.size() + atom_norms.size() + modes.size() + mode_weights.size() + class_share.size()) *
                sizeof(T) +
            (row_start.size() + columns.size() + class_index.size()) * sizeof(std::uint32_t) + sums.bytes() +
-           dual_step.bytes() + runs.bytes();
+           dual_step.bytes() + thin_step.bytes() + runs.bytes();
   }
 };
 

@@ -165,6 +165,10 @@ struct Reconstructor::Tables {
       inverse = std::move(*made);
     }
     fill_inverse(classes, inverse, tables);
+    if (plan.solver == SolverKind::admm && objective.basis == BasisKind::identity) {
+      tables.thin_step = thin_step_tables<T>(sees, image_rows, image_cols, classes, inverse);
+      tables.problem.thin_step = tables.thin_step.view;
+    }
     return {};
   }
 

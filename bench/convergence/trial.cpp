@@ -88,6 +88,16 @@ int Curve::within(double share) const {
   return first;
 }
 
+int Curve::mean_within(double share) const {
+  int first = 0;
+  for (const Reached& r : reached) {
+    const bool inside = r.mean <= (1.0 + share) * converged.mean;
+    if (!inside) first = 0;
+    if (inside && first == 0) first = r.iterations;
+  }
+  return first;
+}
+
 Curve measure_curve(std::vector<recon::Reconstructor>& solvers, const std::vector<Sample>& samples, int most) {
   const Outcomes converged = solve_all(solvers, samples, 10 * most);
   Curve curve;

@@ -43,6 +43,8 @@ struct Curve {
   Reached converged;
   /// The fewest iterations from which on mean and 90th percentile stay within `share` of converged; 0: never.
   [[nodiscard]] int within(double share) const;
+  /// The same of the mean alone.
+  [[nodiscard]] int mean_within(double share) const;
 };
 
 /// Iterations 1 to `most`, denser at the beginning, and ten times `most` as converged.

@@ -68,7 +68,9 @@ class Admm {
         pixel_copy_(!sparse_basis_ || problem.constrained || smooth_),
         coefficient_count_(problem.psi.coefficients()),
         before_(memory.take<T>(coefficient_count_)),
-        gap_(problem, problem.measure_gap && !reweights(), memory) {
+        gap_(problem, problem.measure_gap && !reweights(), memory),
+        samples_in_order_(memory.take<T>(problem.thin_step.sample_size())),
+        residual_in_order_(memory.take<T>(problem.thin_step.sample_size())) {
     if (reweights()) thresholds_ = memory.take<T>(n_);
     if (sparse_basis_) {
       coefficients_ = memory.take<T>(coefficient_count_);
@@ -87,6 +89,8 @@ class Admm {
       return info;
     }
     clear();
+    thin_ = problem_.thin_step.rows > 0 && step_.samples().channels_reweighted() == 0;
+    if (thin_) order_samples(problem_.thin_step, step_.samples().values(), samples_in_order_);
     SplitResiduals residuals;
     in_pixels_.thresholds = nullptr;
     if (reweights()) {
@@ -141,7 +145,11 @@ class Admm {
 
   void iterate(SplitResiduals* residuals) noexcept {
     meet();
-    step_.apply(x_);
+    if (thin_) {
+      apply(problem_.thin_step, samples_in_order_, x_, residual_in_order_);
+    } else {
+      step_.apply(x_);
+    }
     if (sparse_basis_) {
       analyse(problem_.psi, x_, coefficients_, scratch_);
       move(in_basis_, coefficients_, coefficient_count_, residuals);
@@ -175,7 +183,9 @@ class Admm {
   /// The copy that is feasible (pixels) or sparse (coefficients) is the answer, not the average they are drawn to.
   void finish(const SplitResiduals& residuals, FrameInfo& info) noexcept {
     finite_ = all_finite(x_, n_);  // a clip would turn NaN into a number
-    if (pixel_copy_) {
+    if (thin_) {
+      restore_picture(problem_.thin_step, in_pixels_.z, x_);
+    } else if (pixel_copy_) {
       for (std::size_t k = 0; k < n_; ++k) x_[k] = in_pixels_.z[k];
       if (sparse_basis_) analyse(problem_.psi, x_, coefficients_, scratch_);
     } else {
@@ -209,6 +219,9 @@ class Admm {
   std::size_t coefficient_count_;
   T* before_;
   DualityGap<T> gap_;
+  T* samples_in_order_;
+  T* residual_in_order_;
+  bool thin_ = false;
   T* thresholds_ = nullptr;
   T* coefficients_ = nullptr;
   T* scratch_ = nullptr;

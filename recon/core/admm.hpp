@@ -13,6 +13,8 @@ namespace compueye::recon::core {
 /// variable (their joint map is a soft threshold followed by a clip), two (coefficients and pixels) when an orthonormal
 /// basis meets a constraint, because composing those two maps is not the map of their sum.
 ///
+/// In pixels, a frame of a small eye whose weights are all one takes problem.thin_step, a tenth of the time.
+///
 /// Exactly problem.point.iterations iterations. Converged by Boyd et al.'s criterion (section 3.3.1), with both
 /// residuals relative: judged so, a rho that is far too small or too large never looks converged. The returned x
 /// satisfies the constraint exactly. With problem.l1_reweighting (identity basis) as many iterations again, with

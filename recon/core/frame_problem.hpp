@@ -10,6 +10,7 @@
 #include "recon/core/frame_info.hpp"
 #include "recon/core/linear_operator.hpp"
 #include "recon/core/metric.hpp"
+#include "recon/core/thin_step.hpp"
 
 namespace compueye::recon::core {
 
@@ -29,6 +30,7 @@ template <class T>
 struct FrameProblem {
   LinearOperator<T> a;                   ///< seeing rows only
   ClassInverse<T> inverse;               ///< (A K0^-1 A' + rho I)^-1, order = a.rows
+  ThinStep<T> thin_step;                 ///< for admm in pixels
   const std::int32_t* seeing = nullptr;  ///< a.rows channel numbers, ascending
   std::size_t channels = 0;              ///< M: length of y and of the weights
   std::size_t max_reweighted = 0;        ///< how many weights may differ from one in a frame
@@ -56,8 +58,8 @@ struct FrameProblem {
   SingularModes<T> modes;         ///< for tsvd
   bool measure_gap = false;
   bool warm_start = false;  ///< pdhg: frames go on from the last one
-  OperatingPoint point;  ///< point.iterations = K
-  Crew crew = {};        ///< for the passes over pixels and coefficients; operator, bases and inverse have theirs
+  OperatingPoint point;     ///< point.iterations = K
+  Crew crew = {};           ///< for the passes over pixels and coefficients; operator, bases and inverse have theirs
 
   [[nodiscard]] std::size_t pixels() const noexcept { return a.cols; }
 
