@@ -9,15 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "recon/core/adm.hpp"
-#include "recon/core/adm_as_published.hpp"
-#include "recon/core/admm.hpp"
-#include "recon/core/chambolle_pock.hpp"
-#include "recon/core/fista.hpp"
-#include "recon/core/omp.hpp"
-#include "recon/core/pdhg.hpp"
-#include "recon/core/tikhonov.hpp"
-#include "recon/core/tsvd.hpp"
+#include "recon/core/frame_solver.hpp"
 #include "recon/core/warm_start.hpp"
 #include "recon/core/workspace.hpp"
 #include "recon/deflation_rule.hpp"
@@ -37,57 +29,6 @@ namespace {
 
 using hal::ErrorCode;
 using hal::fail;
-
-template <class T>
-FrameInfo solve_with(const core::FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                     float* x) noexcept {
-  switch (problem.point.solver) {
-    case SolverKind::admm:
-      return core::solve_admm(problem, y, weights, workspace, x);
-    case SolverKind::fista:
-      return core::solve_fista(problem, y, weights, workspace, x);
-    case SolverKind::chambolle_pock:
-      return core::solve_chambolle_pock(problem, y, weights, workspace, x);
-    case SolverKind::tikhonov:
-      return core::solve_tikhonov(problem, y, weights, workspace, x);
-    case SolverKind::adm:
-      return core::solve_adm(problem, y, weights, workspace, x);
-    case SolverKind::adm_as_published:
-      return core::solve_adm_as_published(problem, y, weights, workspace, x);
-    case SolverKind::omp:
-      return core::solve_omp(problem, y, weights, workspace, x);
-    case SolverKind::tsvd:
-      return core::solve_tsvd(problem, y, weights, workspace, x);
-    case SolverKind::pdhg:
-      return core::solve_pdhg(problem, y, weights, workspace, x);
-  }
-  return {};
-}
-
-template <class T>
-std::size_t bytes_for(const core::FrameProblem<T>& problem) noexcept {
-  switch (problem.point.solver) {
-    case SolverKind::admm:
-      return core::admm_bytes(problem);
-    case SolverKind::fista:
-      return core::fista_bytes(problem);
-    case SolverKind::chambolle_pock:
-      return core::chambolle_pock_bytes(problem);
-    case SolverKind::tikhonov:
-      return core::tikhonov_bytes(problem);
-    case SolverKind::adm:
-      return core::adm_bytes(problem);
-    case SolverKind::adm_as_published:
-      return core::adm_as_published_bytes(problem);
-    case SolverKind::omp:
-      return core::omp_bytes(problem);
-    case SolverKind::tsvd:
-      return core::tsvd_bytes(problem);
-    case SolverKind::pdhg:
-      return core::pdhg_bytes(problem);
-  }
-  return 0;
-}
 
 }  // namespace
 
@@ -292,8 +233,13 @@ hal::Result<void> Reconstructor::set_iterations(int iterations) {
   });
 }
 
+const core::FrameProblem<float>* Reconstructor::frame_problem() const noexcept {
+  const auto* tables = std::get_if<OwnedTables<float>>(&tables_->by_precision);
+  return tables == nullptr ? nullptr : &tables->problem;
+}
+
 std::size_t Reconstructor::required_bytes() const noexcept {
-  return std::visit([](const auto& tables) { return bytes_for(tables.problem); }, tables_->by_precision);
+  return std::visit([](const auto& tables) { return core::workspace_bytes(tables.problem); }, tables_->by_precision);
 }
 
 std::size_t Reconstructor::table_bytes() const noexcept {
@@ -318,7 +264,7 @@ FrameInfo Reconstructor::solve(std::span<const float> y, std::span<const float> 
   }
   const float* w = weights.empty() ? nullptr : weights.data();
   return std::visit(
-      [&](const auto& tables) { return solve_with(tables.problem, y.data(), w, workspace.data(), x.data()); },
+      [&](const auto& tables) { return core::solve_frame(tables.problem, y.data(), w, workspace.data(), x.data()); },
       tables_->by_precision);
 }
 

@@ -8,6 +8,7 @@
 
 #include "hal/result.hpp"
 #include "recon/core/frame_info.hpp"
+#include "recon/core/frame_problem.hpp"
 #include "recon/factor.hpp"
 #include "recon/response.hpp"
 
@@ -115,6 +116,9 @@ class Reconstructor {
 
   /// The factor, to be stored; without values where the plan needs none.
   [[nodiscard]] const Factor& factor() const noexcept;
+
+  /// What solve() works with, valid as long as this lives; null in double.
+  [[nodiscard]] const core::FrameProblem<float>* frame_problem() const noexcept;
 
  private:
   struct Tables;
