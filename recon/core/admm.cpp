@@ -56,7 +56,7 @@ struct Copy {
 };
 
 template <class T>
-class Admm {
+class Admm : public MadeInWorkspace {
  public:
   Admm(const FrameProblem<T>& problem, Workspace& memory) noexcept
       : problem_(problem),
@@ -236,12 +236,14 @@ template <class T>
 FrameInfo solve_admm(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
                      float* x) noexcept {
   Workspace memory(workspace);
-  return Admm<T>(problem, memory).solve(y, weights, x);
+  auto* place = memory.take<Admm<T>>(1);
+  return (new (place) Admm<T>(problem, memory))->solve(y, weights, x);
 }
 
 template <class T>
 std::size_t admm_bytes(const FrameProblem<T>& problem) noexcept {
   Workspace counter;
+  static_cast<void>(counter.take<Admm<T>>(1));
   const Admm<T> admm(problem, counter);
   return counter.used();
 }

@@ -2,24 +2,12 @@
 
 #include <cstddef>
 
+#include "recon/core/lane_vectors.hpp"
 #include "recon/core/multiversion.hpp"
 
 namespace compueye::recon::core {
 
 // The four quadrants of a picture folded on its centre lines, as core/running_sums.hpp wants them.
-
-template <class T>
-struct FourLanes;
-template <>
-struct FourLanes<float> {
-  using type = float __attribute__((vector_size(16)));
-};
-template <>
-struct FourLanes<double> {
-  using type = double __attribute__((vector_size(32)));
-};
-template <class T>
-using Four = typename FourLanes<T>::type;
 
 struct Fold {
   Fold(std::size_t image_rows, std::size_t image_cols)

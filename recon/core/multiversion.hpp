@@ -5,7 +5,13 @@
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(COMPUEYE_NO_MULTIVERSION)
 #define COMPUEYE_MULTIVERSION __attribute__((target_clones("default", "avx2", "avx512f")))
 #else
-#define COMPUEYE_MULTIVERSION
+// A function of its own here too: what is inlined adds to the stack of every caller on the way down.
+#define COMPUEYE_MULTIVERSION __attribute__((noinline))
 #endif
 
 #define COMPUEYE_INLINE inline __attribute__((always_inline))
+
+/// Set where the processor has no vectors, only 32 single numbers in registers: Cortex-M4 and M7.
+#if defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'M' && !defined(__ARM_FEATURE_MVE)
+#define COMPUEYE_PLAIN_LANES
+#endif

@@ -1,46 +1,11 @@
 #include "recon/core/running_sums.hpp"
 
 #include "recon/core/folded_picture.hpp"
+#include "recon/core/lane_vectors.hpp"
 #include "recon/core/multiversion.hpp"
 
 namespace compueye::recon::core {
 namespace {
-
-template <class T, std::size_t lane_count>
-struct LaneVector {
-  using type = Four<T>;
-};
-template <>
-struct LaneVector<float, 8> {
-  using type = float __attribute__((vector_size(32)));
-};
-template <>
-struct LaneVector<double, 8> {
-  using type = double __attribute__((vector_size(64)));
-};
-template <class T, std::size_t lane_count>
-using Lanes = typename LaneVector<T, lane_count>::type;
-
-/// Lane l of the result is lane l ^ flip of v, in every four lanes.
-template <std::size_t flip, class T>
-COMPUEYE_INLINE void flip_four(T* v) {
-  if constexpr (flip == 0) return;
-  Four<T> four;
-  __builtin_memcpy(&four, v, sizeof(four));
-  if constexpr (flip == 1) four = __builtin_shufflevector(four, four, 1, 0, 3, 2);
-  if constexpr (flip == 2) four = __builtin_shufflevector(four, four, 2, 3, 0, 1);
-  if constexpr (flip == 3) four = __builtin_shufflevector(four, four, 3, 2, 1, 0);
-  __builtin_memcpy(v, &four, sizeof(four));
-}
-
-template <std::size_t flip, class T, std::size_t lane_count>
-COMPUEYE_INLINE Lanes<T, lane_count> flipped(Lanes<T, lane_count> v) {
-  T lanes[lane_count];
-  __builtin_memcpy(lanes, &v, sizeof(v));
-  for (std::size_t l = 0; l < lane_count; l += 4) flip_four<flip>(lanes + l);
-  __builtin_memcpy(&v, lanes, sizeof(v));
-  return v;
-}
 
 template <std::size_t lane_count, class T>
 COMPUEYE_INLINE void sum_outward(const RunningSums<T>& a, const T* x, T* sums, std::size_t begin, std::size_t end) {
@@ -88,7 +53,10 @@ COMPUEYE_INLINE Lanes<T, lane_count> taps_of(const RunningSums<T>& a, const Lane
   for (; k + 4 <= end; k += 4) {
     for (std::size_t p = 0; p < 4; ++p) part[p] += a.difference[k + p] * sums[a.element[k + p]];
   }
-  for (std::size_t p = 0; k + p < end; ++p) part[p] += a.difference[k + p] * sums[a.element[k + p]];
+  // No loop: an index known only at run time would keep the partial sums in memory.
+  if (k < end) part[0] += a.difference[k] * sums[a.element[k]];
+  if (k + 1 < end) part[1] += a.difference[k + 1] * sums[a.element[k + 1]];
+  if (k + 2 < end) part[2] += a.difference[k + 2] * sums[a.element[k + 2]];
   return (part[0] + part[1]) + (part[2] + part[3]);
 }
 
@@ -136,7 +104,9 @@ COMPUEYE_INLINE T taps_of_one(const RunningSums<T>& a, const T* sums, std::size_
   for (; k + 4 <= end; k += 4) {
     for (std::size_t p = 0; p < 4; ++p) part[p] += a.difference[k + p] * sums[4 * std::size_t{a.element[k + p]}];
   }
-  for (std::size_t p = 0; k + p < end; ++p) part[p] += a.difference[k + p] * sums[4 * std::size_t{a.element[k + p]}];
+  if (k < end) part[0] += a.difference[k] * sums[4 * std::size_t{a.element[k]}];
+  if (k + 1 < end) part[1] += a.difference[k + 1] * sums[4 * std::size_t{a.element[k + 1]}];
+  if (k + 2 < end) part[2] += a.difference[k + 2] * sums[4 * std::size_t{a.element[k + 2]}];
   return (part[0] + part[1]) + (part[2] + part[3]);
 }
 

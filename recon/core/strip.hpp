@@ -10,6 +10,13 @@ namespace compueye::recon::core {
 // A strip is a number of rows of 16 signals side by side: each signal is transformed on its own lane, so that vector
 // width cannot change the order of any sum.
 
+/// How many lanes of two outputs fit into a processor's registers: 32 single numbers where it has no vectors.
+#if defined(COMPUEYE_PLAIN_LANES)
+inline constexpr std::size_t lanes_at_once = lanes / 2;
+#else
+inline constexpr std::size_t lanes_at_once = lanes;
+#endif
+
 /// out[k * out_stride] = sum_r c[k * row_step + r * sample_step] in[r], for `n` outputs of `n` inputs, each a strip
 /// row.
 template <class T>
@@ -17,18 +24,20 @@ COMPUEYE_INLINE void strip_product(const T* c, std::size_t row_step, std::size_t
                                    T* __restrict out, std::size_t out_stride, std::size_t n) {
   std::size_t k = 0;
   for (; k + 2 <= n; k += 2) {
-    T first[lanes] = {}, second[lanes] = {};
-    for (std::size_t r = 0; r < n; ++r) {
-      const T c0 = c[k * row_step + r * sample_step];
-      const T c1 = c[(k + 1) * row_step + r * sample_step];
-      for (std::size_t l = 0; l < lanes; ++l) {
-        first[l] += c0 * in[r * lanes + l];
-        second[l] += c1 * in[r * lanes + l];
+    for (std::size_t begin = 0; begin < lanes; begin += lanes_at_once) {
+      T first[lanes_at_once] = {}, second[lanes_at_once] = {};
+      for (std::size_t r = 0; r < n; ++r) {
+        const T c0 = c[k * row_step + r * sample_step];
+        const T c1 = c[(k + 1) * row_step + r * sample_step];
+        for (std::size_t l = 0; l < lanes_at_once; ++l) {
+          first[l] += c0 * in[r * lanes + begin + l];
+          second[l] += c1 * in[r * lanes + begin + l];
+        }
       }
-    }
-    for (std::size_t l = 0; l < lanes; ++l) {
-      out[k * out_stride * lanes + l] = first[l];
-      out[(k + 1) * out_stride * lanes + l] = second[l];
+      for (std::size_t l = 0; l < lanes_at_once; ++l) {
+        out[k * out_stride * lanes + begin + l] = first[l];
+        out[(k + 1) * out_stride * lanes + begin + l] = second[l];
+      }
     }
   }
   if (k < n) {

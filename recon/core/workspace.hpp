@@ -29,4 +29,11 @@ class Workspace {
   std::size_t used_ = 0;
 };
 
+/// Base of what is made in memory that take() gave, because its members would fill a microcontroller's stack:
+/// `new (place) Solver(...)`, never deleted, so it must not need a destructor.
+struct MadeInWorkspace {
+  static void* operator new(std::size_t, void* place) noexcept { return place; }
+  static void operator delete(void*, void*) noexcept {}
+};
+
 }  // namespace compueye::recon::core

@@ -28,9 +28,10 @@ Case make_case(std::string_view name, const bench::Eye& eye, std::string_view sc
   return golden;
 }
 
-Case small_eye(std::string_view name, bool measured) {
+Case small_eye(std::string_view name, std::string_view scene, BasisKind basis, bool measured) {
   constexpr double lsb = 128.0 / 65535.0;
-  Case golden = make_case(name, bench::eye_8x8(), "fig2", lsb);
+  Case golden = make_case(name, bench::eye_8x8(), scene, lsb);
+  golden.objective.basis = basis;
   golden.measured = measured;
   golden.plan.iterations = 30;
   return golden;
@@ -67,8 +68,9 @@ hal::Result<recon::Response> response_of(const Case& golden) {
 
 std::vector<Case> golden_cases() {
   return {
-      small_eye("8x8-admm", false),
-      small_eye("8x8-measured-admm", true),
+      small_eye("8x8-admm", "fig2", BasisKind::identity, false),
+      small_eye("8x8-measured-admm", "fig2", BasisKind::identity, true),
+      small_eye("8x8-admm-dct", "bars", BasisKind::dct, false),
       large_eye("80x80-admm", "line-art", BasisKind::dct, SolverKind::admm, 60),
       large_eye("80x80-cp-tv", "phantom", BasisKind::tv, SolverKind::chambolle_pock, 30),
   };
