@@ -11,7 +11,10 @@
 
 #define COMPUEYE_INLINE inline __attribute__((always_inline))
 
-/// Set where the processor has no vectors, only 32 single numbers in registers: Cortex-M4 and M7.
-#if defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'M' && !defined(__ARM_FEATURE_MVE)
-#define COMPUEYE_PLAIN_LANES
+// What few registers and little stack ask for; it changes no bit.
+#if defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'M'
+#define COMPUEYE_CORTEX_M
+#if !defined(__ARM_FEATURE_MVE)
+#define COMPUEYE_PLAIN_LANES  // no vectors: Cortex-M4 and M7
+#endif
 #endif

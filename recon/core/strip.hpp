@@ -10,8 +10,8 @@ namespace compueye::recon::core {
 // A strip is a number of rows of 16 signals side by side: each signal is transformed on its own lane, so that vector
 // width cannot change the order of any sum.
 
-/// How many lanes of two outputs fit into a processor's registers: 32 single numbers where it has no vectors.
-#if defined(COMPUEYE_PLAIN_LANES)
+/// How many lanes of two outputs fit into a processor's registers: a Cortex-M has room for 32 single numbers.
+#if defined(COMPUEYE_CORTEX_M)
 inline constexpr std::size_t lanes_at_once = lanes / 2;
 #else
 inline constexpr std::size_t lanes_at_once = lanes;

@@ -13,12 +13,27 @@ COMPUEYE_INLINE T add_lanes(T* sum) {
   return sum[0];
 }
 
+/// sum[l] += term(l) for every lane. Sixteen doubles are in no register of a processor without vectors: unrolled they
+/// would only take more of its stack.
+template <class T, class Term>
+COMPUEYE_INLINE void add_to_lanes(T* sum, Term term) {
+#if defined(COMPUEYE_PLAIN_LANES)
+  if constexpr (sizeof(T) == sizeof(double)) {
+#pragma GCC unroll 1
+    for (std::size_t l = 0; l < lanes; ++l) sum[l] += term(l);
+    return;
+  }
+#endif
+  for (std::size_t l = 0; l < lanes; ++l) sum[l] += term(l);
+}
+
 template <class T, class Term>
 COMPUEYE_INLINE T sum_over_lanes(std::size_t n, Term term) {
   T sum[lanes] = {};
   std::size_t k = 0;
   for (; k + lanes <= n; k += lanes) {
-    for (std::size_t l = 0; l < lanes; ++l) sum[l] += term(k + l);
+    add_to_lanes(
+        sum, [=](std::size_t l) __attribute__((always_inline)) { return term(k + l); });
   }
   for (std::size_t l = 0; k + l < n; ++l) sum[l] += term(k + l);
   return add_lanes(sum);
