@@ -153,7 +153,7 @@ expect "apt-get that claims success" 1 'still not installed'
 machine "$everything"
 run install-packages --check nonsense
 expect "an unknown group" 2 "no package group 'nonsense'"
-for script in count-instructions install-packages build-preset demo test tidy; do
+for script in count-instructions install-packages build-preset demo mcu test tidy; do
   run "$script" --help
   expect "$script --help has an example" 0 "^Example: tools/$script"
   run "$script" --nonsense
@@ -167,6 +167,10 @@ run count-instructions --target
 expect "count-instructions --target wants a value" 2 'needs a value'
 run count-instructions --target toaster
 expect "count-instructions refuses an unknown target" 2 "unknown target 'toaster'"
+run mcu M3
+expect "mcu refuses an unknown core" 2 "unknown core 'M3'"
+run mcu --case
+expect "mcu --case wants a value" 2 'needs a value'
 run demo --out
 expect "demo --out wants a folder" 2 'needs a folder'
 

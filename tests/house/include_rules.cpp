@@ -16,7 +16,7 @@ constexpr std::string_view not_on_the_frame_path =
     "any regex memory_resource new cstdlib stdlib.h thread mutex shared_mutex condition_variable future coroutine";
 
 // "Who may include whom": the house's table, a row a folder.
-constexpr std::array<FolderRule, 21> rules{{
+constexpr std::array<FolderRule, 22> rules{{
     {"hal", "hal", "tl-expected", false, none, false,
      "hal is contracts only: the standard library and tl::expected, no other folder, no OS header"},
 
@@ -48,6 +48,8 @@ constexpr std::array<FolderRule, 21> rules{{
      "firmware/pipeline: hal and recon, never calib, drivers or sim"},
     {"firmware/supervisor", "hal recon recon/core firmware/pipeline firmware/supervisor", none, false, none, false,
      "firmware/supervisor: hal, recon and the pipeline it watches"},
+    {"firmware/bare_metal", "recon/core firmware/bare_metal", none, false, not_on_the_frame_path, false,
+     "firmware/bare_metal: recon/core and the standard library without I/O, exceptions and heap"},
     {"firmware/files", "hal recon recon/core firmware/files", "libpng xxhash", true, none, false,
      "firmware/files: hal, recon, libpng, xxhash and OS headers"},
     {"firmware/sinks", "hal firmware/files firmware/sinks", none, true, none, false,
