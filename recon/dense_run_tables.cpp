@@ -133,7 +133,7 @@ class Writer {
     ++groups_;
     run_end_ = start + group_pixels;
     constexpr std::array<double, 4> nothing{};
-    std::array<std::array<double, 4>, group_pixels> pixels;
+    std::array<std::array<double, 4>, group_pixels> pixels{};
     for (int k = 0; k < group_pixels; ++k) {
       pixels[static_cast<std::size_t>(k)] = k < left_out ? nothing : block.at(start + k);
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace compueye::recon::core {
 
@@ -16,7 +17,7 @@ struct Crew {
   void (*run)(void* context, Task task, void* data) noexcept = nullptr;
 
   /// Pictures of fewer pixels are done before the workers have met.
-  static constexpr std::size_t least_worth = 96 * 96;
+  static constexpr std::size_t least_worth = std::size_t{96} * 96;
 
   /// Calls work(worker, begin, end) so that every part of 0 .. parts-1 is in one range; in this thread alone where
   /// `size` elements are too few to be worth it. What a worker does must not depend on what another does in the same
@@ -41,5 +42,21 @@ struct Crew {
     }
   };
 };
+
+/// Cuts items, of which item i is work sums[i * apart] .. sums[(i+1) * apart], so that shares of the work are even: the
+/// first item that begins at or after `work`, or `items` where that is all of it.
+inline std::size_t item_at(const std::uint32_t* sums, std::size_t apart, std::size_t items, std::size_t work) noexcept {
+  if (work >= sums[items * apart]) return items;
+  std::size_t low = 0, high = items;
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (sums[middle * apart] < work) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
 
 }  // namespace compueye::recon::core

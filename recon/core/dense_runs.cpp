@@ -204,8 +204,10 @@ COMPUEYE_MULTIVERSION void adjoint_part(const DenseRuns<double>& a, const double
 
 template <class T>
 void shared_forward(const DenseRuns<T>& a, const T* x, T* y, const Crew& crew) noexcept {
-  crew.share(a.blocks, flops(a),
-             [&](std::size_t, std::size_t begin, std::size_t end) { forward_part(a, x, y, begin, end); });
+  const std::size_t groups = a.group[a.blocks * a.bands];
+  crew.share(groups, flops(a), [&](std::size_t, std::size_t begin, std::size_t end) {
+    forward_part(a, x, y, item_at(a.group, a.bands, a.blocks, begin), item_at(a.group, a.bands, a.blocks, end));
+  });
 }
 
 template <class T>

@@ -184,7 +184,11 @@ void share_step(Step step, const RunningSums<T>& a, const T* in, T* out, std::si
 template <class T>
 void forward_of(const RunningSums<T>& a, const T* x, T* y, T* scratch, const Crew& crew) noexcept {
   share_step(Step::outward, a, x, scratch, a.half_rows(), crew);
-  share_step(Step::taps, a, scratch, y, a.tables, crew);
+  const std::size_t apart = 4 * a.bands, taps = a.first[a.tables * apart];
+  crew.share(taps, a.image_rows * a.image_cols, [&](std::size_t, std::size_t begin, std::size_t end) {
+    do_step(Step::taps, a, scratch, y, item_at(a.first, apart, a.tables, begin),
+            item_at(a.first, apart, a.tables, end));
+  });
 }
 
 template <class T>

@@ -85,7 +85,7 @@ class Runner {
   }
 
   /// By hand, else the board's for the board's own basis, else by rule.
-  Result<double> lambda_of(const Contender& contender) const {
+  [[nodiscard]] Result<double> lambda_of(const Contender& contender) const {
     if (options_.lambda) return *options_.lambda;
     const bool boards = contender.basis == board_.reconstruction.basis && shares_objective(contender.solver);
     if (boards && board_.reconstruction.lambda && !options_.sigma) return *board_.reconstruction.lambda;
