@@ -4,20 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "calib/nominal.hpp"
-#include "firmware/app/board/dead_ommatidia.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/penalty_rule.hpp"
 #include "recon/quantised_response.hpp"
 
 namespace compueye::firmware {
 namespace {
-
-std::vector<std::uint8_t> seeing_flags(const recon::Response& response) {
-  std::vector<std::uint8_t> sees(static_cast<std::size_t>(response.rows()), 0);
-  for (const std::int32_t m : response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
-  return sees;
-}
 
 hal::Result<LambdaChoice> choose_lambda(const Board& board, const EyeRequest& request,
                                         const recon::Response& response) {
@@ -34,6 +26,7 @@ hal::Result<LambdaChoice> choose_lambda(const Board& board, const EyeRequest& re
 recon::Plan plan_of(const Board& board, const EyeRequest& request, std::int64_t seeing) {
   recon::Plan plan;
   plan.solver = board.reconstruction.solver;
+  plan.precision = request.precision;
   plan.iterations = request.iterations.value_or(board.reconstruction.iterations);
   plan.rho = board.reconstruction.rho.value_or(0.0);
   plan.relaxation = board.reconstruction.relaxation;
@@ -51,26 +44,24 @@ recon::Objective objective_of(const Board& board, double lambda) {
   return {settings.basis, settings.constraint, settings.box_lo, settings.box_hi, lambda};
 }
 
-hal::Result<std::unique_ptr<recon::Response>> living_response(const Board& board, std::vector<std::uint8_t>& sees,
-                                                              const recon::Progress& progress) {
-  auto response = calib::nominal_response(board.eye, board.object, progress);
-  if (!response) return tl::unexpected(std::move(response.error()));
-  sees = seeing_flags(*response);
-  if (board.sensor.dead.empty()) return std::make_unique<recon::Response>(std::move(*response));
-  return std::make_unique<recon::Response>(without_dead(*response, board.sensor.dead));
-}
-
 }  // namespace
 
 hal::Result<ReadyEye> ReadyEye::make(const Board& board, const EyeRequest& request, const recon::Progress& progress) {
+  const auto living = living_response(board, progress);
+  if (!living) return tl::unexpected(living.error());
+  return make(board, *living, request, progress);
+}
+
+hal::Result<ReadyEye> ReadyEye::make(const Board& board, const LivingResponse& living, const EyeRequest& request,
+                                     const recon::Progress& progress) {
   ReadyEye eye;
-  auto response = living_response(board, eye.sees_, progress);
-  if (!response) return tl::unexpected(std::move(response.error()));
+  eye.sees_ = living.sees;
+  std::optional<recon::Response> rounded;
   if (board.reconstruction.op && recon::is_lossy(*board.reconstruction.op)) {
     // The factor is kept under the hash of the matrix that it belongs to.
-    **response = recon::quantised(**response, *board.reconstruction.op);
+    rounded = recon::quantised(living.response, *board.reconstruction.op);
   }
-  const recon::Response& a = **response;
+  const recon::Response& a = rounded ? *rounded : living.response;
   if (progress && !progress("lambda by rule", 0.0, 0.0)) {
     return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");
   }
@@ -80,7 +71,7 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const EyeRequest& reque
 
   const recon::Objective objective = objective_of(board, lambda->value);
   const recon::Plan plan = plan_of(board, request, std::count(eye.sees_.begin(), eye.sees_.end(), 1));
-  const bool cached = recon::uses_factor(plan.solver);
+  const bool cached = recon::uses_factor(plan.solver) && plan.precision == recon::Precision::f32;
   const recon::Factor wanted =
       recon::Reconstructor::wanted_factor(a, board.object.rows, board.object.cols, objective, plan);
   KeptFactor factor(cached ? request.cache : std::filesystem::path{},

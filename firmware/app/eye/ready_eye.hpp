@@ -9,6 +9,7 @@
 
 #include "firmware/app/board/board.hpp"
 #include "firmware/app/eye/kept_factor.hpp"
+#include "firmware/app/eye/living_response.hpp"
 #include "hal/result.hpp"
 #include "recon/reconstructor.hpp"
 
@@ -21,6 +22,7 @@ struct EyeRequest {
   std::optional<double> sigma;   ///< of one sample, for the rule; wins over a lambda that the board states
   std::optional<int> threads;
   std::filesystem::path cache;  ///< where what takes long is kept; empty: nowhere
+  recon::Precision precision = recon::Precision::f32;
 };
 
 /// Where lambda came from.
@@ -38,6 +40,9 @@ class ReadyEye {
   /// lambda_by_rule() and Reconstructor::create(); interrupted.
   [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const EyeRequest& request,
                                                   const recon::Progress& progress);
+  /// The same on a response that is there already, which only this call looks at.
+  [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const LivingResponse& living,
+                                                  const EyeRequest& request, const recon::Progress& progress);
 
   [[nodiscard]] const recon::Reconstructor& reconstructor() const noexcept { return *reconstructor_; }
   /// By ommatidium, 0 = sees nothing of the object plane by its geometry; a dead one may well see.
