@@ -21,6 +21,7 @@ int run(int argc, char** argv) {
   firmware::add_response_command(app, chosen);
   firmware::add_reconstruct_command(app, chosen);
   firmware::add_compare_command(app, chosen);
+  firmware::add_pareto_command(app, chosen);
   firmware::add_inspect_command(app, chosen);
   firmware::add_devices_command(app, chosen);
   try {

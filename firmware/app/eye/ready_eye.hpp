@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware/app/board/board.hpp"
@@ -45,6 +46,8 @@ class ReadyEye {
                                                   const EyeRequest& request, const recon::Progress& progress);
 
   [[nodiscard]] const recon::Reconstructor& reconstructor() const noexcept { return *reconstructor_; }
+  /// Gives the reconstructor away, and with it the right to ask for it.
+  [[nodiscard]] recon::Reconstructor take_reconstructor() && { return std::move(*reconstructor_); }
   /// By ommatidium, 0 = sees nothing of the object plane by its geometry; a dead one may well see.
   [[nodiscard]] const std::vector<std::uint8_t>& sees() const noexcept { return sees_; }
   [[nodiscard]] const LambdaChoice& lambda() const noexcept { return lambda_; }

@@ -1,0 +1,121 @@
+#include "firmware/app/pareto/evaluation_scenes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "firmware/app/eye/scene_choice.hpp"
+#include "firmware/app/eye/simulated_board.hpp"
+#include "hal/sample_block.hpp"
+#include "hal/sample_source.hpp"
+#include "sim/built_in_scenes.hpp"
+#include "sim/optics.hpp"
+#include "sim/scene_truth.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::ErrorCode;
+using hal::Result;
+
+Result<void> check_name(const std::string& name) {
+  if (name == "fig2") {
+    return hal::fail(ErrorCode::usage, "--scenes",
+                     "has fig2, which is one and the same drawing for every seed; dots are like it");
+  }
+  const auto known = sim::built_in_scenes();
+  if (std::any_of(known.begin(), known.end(), [&](const auto& scene) { return scene.name == name; })) return {};
+  return hal::fail(ErrorCode::usage, "--scenes",
+                   fmt::format("has '{}', expected built-in scenes, which draw another picture for every seed: "
+                               "line-art, phantom, bars, dots",
+                               name));
+}
+
+Result<EvaluationScene> drawn(const Board& board, const sim::Optics& optics, const std::string& name,
+                              std::uint64_t seed) {
+  const auto scene = choose_scene(board, {name, seed, std::nullopt});
+  if (!scene) return tl::unexpected(scene.error());
+  auto truth = sim::scene_truth(*scene, board.object);
+  if (!truth) return tl::unexpected(std::move(truth.error()));
+  auto signals = optics.expose(*scene);
+  if (!signals) return tl::unexpected(std::move(signals.error()));
+  return EvaluationScene{name, seed, std::move(*truth), std::move(*signals)};
+}
+
+}  // namespace
+
+std::vector<std::string> usual_scenes(const Board& board) {
+  constexpr int least = 32;
+  if (std::min(board.object.rows, board.object.cols) < least) return {"dots"};
+  return {"line-art", "phantom", "bars"};
+}
+
+Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board, const std::vector<std::string>& names,
+                                                            const recon::Progress& progress) {
+  for (const std::string& name : names) {
+    if (auto known = check_name(name); !known) return tl::unexpected(std::move(known.error()));
+  }
+  sim::Optics optics = simulated_eye_settings(board, {}, 0).optics;
+  optics.profile = sim::AngularProfile::flat_top(optics.eye.acceptance_rad);
+  std::vector<EvaluationScene> scenes;
+  while (scenes.size() < evaluation_scenes) {
+    if (!progress("evaluation scenes", static_cast<double>(scenes.size()), static_cast<double>(evaluation_scenes))) {
+      return hal::fail(ErrorCode::interrupted, board.name, "stopped before anything was measured");
+    }
+    const std::size_t i = scenes.size();
+    auto scene = drawn(board, optics, names[i % names.size()], first_evaluation_seed + i);
+    if (!scene) return tl::unexpected(std::move(scene.error()));
+    scenes.push_back(std::move(*scene));
+  }
+  return scenes;
+}
+
+Board with_noise(const Board& board, double times) {
+  constexpr double rounding = 1.0 / 12.0;  // variance of a code, in LSB squared
+  Board noisy = board;
+  const double own = board.sensor.read_noise_lsb * board.sensor.read_noise_lsb + rounding;
+  noisy.sensor.read_noise_lsb = std::sqrt(std::max(0.0, own * times * times - rounding));
+  return noisy;
+}
+
+Result<std::vector<EvaluationFrame>> take_frames(const Board& board, const std::vector<EvaluationScene>& scenes,
+                                                 const std::vector<std::uint8_t>& sees, const NoiseLevel& level) {
+  const Board noisy = with_noise(board, level.times);
+  const auto sensor = sim::Sensor::create(simulated_eye_settings(noisy, {}, 0).sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  const auto channels = static_cast<std::size_t>(board.eye.ommatidia());
+  hal::SourceDescription description;
+  description.channels = board.eye.ommatidia();
+  description.bits = board.sensor.bits;
+  description.ommatidium_of_channel.resize(channels);
+  std::iota(description.ommatidium_of_channel.begin(), description.ommatidium_of_channel.end(), 0);
+  description.sample_offset_ns.assign(channels, 0);
+  auto correction = Correction::create(correction_settings(noisy, sees), description);
+  if (!correction) return tl::unexpected(std::move(correction.error()));
+  std::vector<std::uint8_t> valid(channels, 1);
+  for (const int dead : board.sensor.dead) valid[static_cast<std::size_t>(dead)] = 0;
+  std::vector<double> levels_lsb(channels);
+  std::vector<std::int32_t> codes(channels);
+  std::vector<EvaluationFrame> frames;
+  for (const EvaluationScene& scene : scenes) {
+    hal::SampleBlock block;
+    block.flags.saturated = sensor->digitise(scene.signals, scene.seed, 0, levels_lsb, codes);
+    block.codes = codes;
+    block.valid = valid;
+    block.bits = board.sensor.bits;
+    EvaluationFrame frame{std::vector<float>(channels), std::vector<float>(channels)};
+    const CorrectionReport report = correction->apply(block, frame.y, frame.weights);
+    if (!report.usable) {
+      return hal::fail(ErrorCode::mismatch, board.place("sensor", "max_missing_share"),
+                       fmt::format("a frame of {} lacks {} channels, {} of them saturated, and would be dropped",
+                                   scene.name, report.masked, report.saturated));
+    }
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+}  // namespace compueye::firmware

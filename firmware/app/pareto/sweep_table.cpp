@@ -1,0 +1,138 @@
+#include "firmware/app/pareto/sweep_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+#include <string_view>
+
+#include "firmware/app/report/nearest_name.hpp"
+#include "firmware/app/report/number_text.hpp"
+#include "recon/option_names.hpp"
+#include "recon/solver_table.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using recon::BasisKind;
+using recon::Precision;
+using recon::SolverKind;
+
+constexpr int every_eye = std::numeric_limits<int>::max();
+
+/// A line of the sweep: a solver in one form, in every basis it takes.
+struct SweepRow {
+  SolverKind solver;
+  Precision precision;
+  bool boards_basis_only;
+  int most_rows;  ///< seeing rows up to which it is swept without being asked for by name
+  std::vector<int> iterations;
+  std::vector<int> quick;
+};
+
+/// What is swept. To sweep more, add a line.
+const std::vector<SweepRow>& sweep_rows() {
+  constexpr int large = 2000;  // rows from which a whole spectrum or a factor in double takes minutes
+  static const std::vector<int> factored{1, 2, 3, 5, 8, 12, 20, 30, 50, 80, 120, 200}, few{2, 8, 30, 120};
+  static const std::vector<int> first_order{10, 30, 100, 300, 1000, 3000}, few_first_order{30, 300};
+  static const std::vector<SweepRow> rows{
+      {SolverKind::admm, Precision::f32, false, every_eye, factored, few},
+      {SolverKind::tikhonov, Precision::f32, false, every_eye, {1}, {1}},
+      {SolverKind::adm, Precision::f32, false, every_eye, factored, few},
+      {SolverKind::chambolle_pock, Precision::f32, false, every_eye, first_order, few_first_order},
+      {SolverKind::fista, Precision::f32, false, every_eye, first_order, few_first_order},
+      {SolverKind::omp, Precision::f32, false, large, {5, 10, 20, 50}, {20}},
+      {SolverKind::tsvd, Precision::f32, false, large, {1}, {1}},
+      {SolverKind::admm, Precision::f64, true, large, factored, few},
+  };
+  return rows;
+}
+
+template <class Kind>
+hal::Result<void> check_names(const char* option, const std::vector<std::string>& words,
+                              std::span<const recon::Named<Kind>> table) {
+  std::vector<std::string_view> known;
+  for (const auto& named : table) known.push_back(named.name);
+  for (const std::string& word : words) {
+    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+    return hal::fail(
+        hal::ErrorCode::usage, option,
+        fmt::format("is '{}', expected one of {}{}", word, fmt::join(known, ", "), suggestion(word, known)));
+  }
+  return {};
+}
+
+bool wanted(const std::vector<std::string>& words, std::string_view word) {
+  return words.empty() || std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// The board's own basis first.
+std::vector<BasisKind> bases_of(const SweepRow& row, const Board& board, const ParetoOptions& options) {
+  std::vector<BasisKind> bases;
+  const BasisKind own = board.reconstruction.basis;
+  if (wanted(options.bases, recon::name(own))) bases.push_back(own);
+  // Those that win most often first, since time may run out.
+  for (const BasisKind basis :
+       {BasisKind::dct, BasisKind::tv, BasisKind::identity, BasisKind::haar, BasisKind::db4, BasisKind::dft}) {
+    if (row.boards_basis_only || basis == own || !wanted(options.bases, recon::name(basis))) continue;
+    bases.push_back(basis);
+  }
+  return bases;
+}
+
+std::vector<int> iterations_of(const SweepRow& row, BasisKind basis, const Board& board, bool quick) {
+  std::vector<int> iterations = quick ? row.quick : row.iterations;
+  const ReconstructionSettings& own = board.reconstruction;
+  const bool iterates = row.solver != SolverKind::tikhonov && row.solver != SolverKind::tsvd;
+  if (row.solver == own.solver && basis == own.basis && iterates) iterations.push_back(own.iterations);
+  std::sort(iterations.begin(), iterations.end());
+  iterations.erase(std::unique(iterations.begin(), iterations.end()), iterations.end());
+  return iterations;
+}
+
+void add_row(const SweepRow& row, const Board& board, const ParetoOptions& options, SweepPlan& plan) {
+  for (const BasisKind basis : bases_of(row, board, options)) {
+    for (const auto constraint : {board.reconstruction.constraint, recon::ConstraintKind::none}) {
+      if (!recon::supports(row.solver, basis, constraint)) continue;
+      plan.curves.push_back(
+          {{row.solver, basis, constraint, row.precision}, iterations_of(row, basis, board, options.quick)});
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+std::string title(const Curve& curve) {
+  std::string text(recon::name(curve.solver));
+  if (curve.solver != SolverKind::tikhonov && curve.solver != SolverKind::tsvd) {
+    text += ' ';
+    text += recon::name(curve.basis);
+  }
+  return curve.precision == Precision::f64 ? text + " f64" : text;
+}
+
+hal::Result<SweepPlan> plan_sweep(const Board& board, const ParetoOptions& options, int seeing) {
+  if (auto ok = check_names("--solvers", options.solvers, recon::solver_names()); !ok)
+    return tl::unexpected(ok.error());
+  if (auto ok = check_names("--bases", options.bases, recon::basis_names()); !ok) return tl::unexpected(ok.error());
+  SweepPlan plan;
+  for (const SweepRow& row : sweep_rows()) {
+    const std::string_view solver = recon::name(row.solver);
+    if (!wanted(options.solvers, solver)) continue;
+    if (seeing > row.most_rows && (options.solvers.empty() || row.boards_basis_only)) {
+      plan.notes.push_back(fmt::format("{}{} is left out: it takes minutes with more than {} seeing ommatidia{}",
+                                       solver, row.precision == Precision::f64 ? " in f64" : "", grouped(row.most_rows),
+                                       row.boards_basis_only ? "" : fmt::format("; --solvers {} asks for it", solver)));
+      continue;
+    }
+    add_row(row, board, options, plan);
+  }
+  if (!plan.curves.empty()) return plan;
+  return hal::fail(hal::ErrorCode::usage, "--solvers",
+                   "and --bases leave nothing to measure; `compueye reconstruct --help` says what goes with what");
+}
+
+}  // namespace compueye::firmware

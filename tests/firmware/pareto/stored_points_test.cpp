@@ -1,0 +1,108 @@
+#include "firmware/app/pareto/stored_points.hpp"
+
+#include <doctest/doctest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "firmware/app/pareto/sweep_json.hpp"
+#include "tests/firmware/pareto/some_sweep.hpp"
+#include "tests/firmware/temporary_folder.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+using compueye::test::some_sweep;
+using compueye::test::TemporaryFolder;
+using hal::ErrorCode;
+
+namespace {
+
+Sweep two_points() {
+  Sweep sweep = some_sweep({{2, 1, 0.5}, {5, 2, 0.3, recon::BasisKind::tv}});
+  sweep.points[1].curve.precision = recon::Precision::f64;
+  sweep.points[1].levels[0].quality.mean.psnr_db = std::numeric_limits<double>::infinity();
+  sweep.notes = {"a note"};
+  return sweep;
+}
+
+PointsKey key_of(const Sweep& sweep) {
+  return {sweep.response_hash, sweep.machine, sweep.constraint, sweep.lo, sweep.hi};
+}
+
+}  // namespace
+
+TEST_CASE("points come back as they were stored") {
+  const TemporaryFolder folder;
+  const Sweep sweep = two_points();
+  REQUIRE(store_points(folder / "made", sweep).has_value());
+  const auto loaded = load_points(folder / "made", key_of(sweep));
+  REQUIRE_MESSAGE(loaded.has_value(), loaded.error().text());
+  CHECK(sweep_json(*loaded) == sweep_json(sweep));
+  CHECK(loaded->points[1].curve == sweep.points[1].curve);
+  CHECK(loaded->points[1].levels[0].quality.mean.psnr_db == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("points of another machine, build, response or constraint are stale, and the sentence says which") {
+  const TemporaryFolder folder;
+  const Sweep sweep = two_points();
+  REQUIRE(store_points(folder.path(), sweep).has_value());
+  const auto refused = [&](const std::function<void(PointsKey&)>& change) {
+    PointsKey key = key_of(sweep);
+    change(key);
+    const auto loaded = load_points(folder.path(), key);
+    REQUIRE_FALSE(loaded.has_value());
+    CHECK(loaded.error().code == ErrorCode::stale);
+    return loaded.error().sentence;
+  };
+  CHECK(refused([](PointsKey& k) { k.machine.cpu = "Cortex-A76"; }).find("Cortex-A76") != std::string::npos);
+  CHECK(refused([](PointsKey& k) { k.machine.cores = 400; }).find("400 cores") != std::string::npos);
+  CHECK(refused([](PointsKey& k) { k.machine.build = "0.2.0 x"; }).find("another build") != std::string::npos);
+  CHECK(refused([](PointsKey& k) { ++k.response_hash; }).find("another response") != std::string::npos);
+  CHECK(refused([](PointsKey& k) { k.constraint = recon::ConstraintKind::none; }).find("none") != std::string::npos);
+  CHECK(refused([](PointsKey& k) { k.hi = 2.0; }).find("to 2") != std::string::npos);
+}
+
+TEST_CASE("no points are no points") {
+  const TemporaryFolder folder;
+  const auto loaded = load_points(folder.path(), key_of(two_points()));
+  REQUIRE_FALSE(loaded.has_value());
+  CHECK(loaded.error().code == ErrorCode::not_found);
+}
+
+TEST_CASE("a damaged file gives an error or the same points, never a crash") {
+  const TemporaryFolder folder;
+  const Sweep sweep = two_points();
+  REQUIRE(store_points(folder.path(), sweep).has_value());
+  const std::string bytes = test::bytes_of(points_path(folder.path()));
+  for (const char* text : {"", "[]", "{}", "null", "{\"format\": 3}", "{\"format\": \"compueye accuracy and time\"}",
+                           "{\"format\": \"compueye accuracy and time\", \"version\": \"1\"}",
+                           "{\"format\": \"compueye accuracy and time\", \"version\": 1}"}) {
+    folder.file("accuracy-and-time.json", text);
+    CHECK_FALSE(load_points(folder.path(), key_of(sweep)).has_value());
+  }
+  for (std::size_t number = 0; number < 400; ++number) {
+    folder.file("accuracy-and-time.json", test::damaged(bytes, number));
+    const auto loaded = load_points(folder.path(), key_of(sweep));
+    if (loaded) {
+      CHECK_FALSE(loaded->points.empty());
+      for (const MeasuredPoint& point : loaded->points) CHECK(point.levels.size() == loaded->levels.size());
+    } else {
+      CHECK_FALSE(loaded.error().sentence.empty());
+    }
+  }
+}
+
+TEST_CASE("a version of another program is stale") {
+  const TemporaryFolder folder;
+  const Sweep sweep = two_points();
+  REQUIRE(store_points(folder.path(), sweep).has_value());
+  std::string bytes = test::bytes_of(points_path(folder.path()));
+  const std::string version = "\"version\": 1";
+  bytes.replace(bytes.find(version), version.size(), "\"version\": 99");
+  folder.file("accuracy-and-time.json", bytes);
+  const auto loaded = load_points(folder.path(), key_of(sweep));
+  REQUIRE_FALSE(loaded.has_value());
+  CHECK(loaded.error().code == ErrorCode::stale);
+  CHECK(loaded.error().sentence.find("99") != std::string::npos);
+}

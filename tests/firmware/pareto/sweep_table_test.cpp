@@ -1,0 +1,97 @@
+#include "firmware/app/pareto/sweep_table.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "recon/option_names.hpp"
+#include "recon/solver_table.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+using recon::BasisKind;
+using recon::Precision;
+using recon::SolverKind;
+
+namespace {
+
+Board some_board() {
+  auto board = load_board(std::filesystem::path(COMPUEYE_SOURCE_DIR) / "boards" / "sim-8x8");
+  REQUIRE(board.has_value());
+  board->reconstruction.basis = BasisKind::tv;
+  board->reconstruction.iterations = 17;
+  return *board;
+}
+
+SweepPlan plan_of(const ParetoOptions& options, int seeing = 64) {
+  auto plan = plan_sweep(some_board(), options, seeing);
+  REQUIRE(plan.has_value());
+  return *plan;
+}
+
+}  // namespace
+
+TEST_CASE("only what goes together is swept, with the board's constraint where it is taken") {
+  const SweepPlan plan = plan_of({});
+  for (const PlannedCurve& planned : plan.curves) {
+    const Curve& c = planned.curve;
+    CHECK(recon::supports(c.solver, c.basis, c.constraint));
+    CHECK((c.constraint == recon::ConstraintKind::box ||
+           !recon::supports(c.solver, c.basis, recon::ConstraintKind::box)));
+    CHECK_FALSE(planned.iterations.empty());
+    CHECK(std::is_sorted(planned.iterations.begin(), planned.iterations.end()));
+    CHECK(std::adjacent_find(planned.iterations.begin(), planned.iterations.end()) == planned.iterations.end());
+    CHECK(std::count_if(plan.curves.begin(), plan.curves.end(), [&](const auto& o) { return o.curve == c; }) == 1);
+  }
+  for (const auto& solver : recon::solver_names()) {
+    CAPTURE(solver.name);
+    CHECK(std::any_of(plan.curves.begin(), plan.curves.end(),
+                      [&](const PlannedCurve& p) { return p.curve.solver == solver.kind; }));
+  }
+}
+
+TEST_CASE("the board's own point comes first and is among those of its curve, quick or not") {
+  for (const bool quick : {false, true}) {
+    ParetoOptions options;
+    options.quick = quick;
+    const PlannedCurve first = plan_of(options).curves.front();
+    CHECK(first.curve.solver == SolverKind::admm);
+    CHECK(first.curve.basis == BasisKind::tv);
+    CHECK(std::count(first.iterations.begin(), first.iterations.end(), 17) == 1);
+  }
+}
+
+TEST_CASE("options leave out solvers and bases, and names that do not exist are errors") {
+  ParetoOptions options;
+  options.solvers = {"admm", "cp"};
+  options.bases = {"dct"};
+  const SweepPlan plan = plan_of(options);
+  REQUIRE(plan.curves.size() == 2);
+  CHECK(title(plan.curves[0].curve) == "admm dct");
+  CHECK(title(plan.curves[1].curve) == "cp dct");
+  for (const auto& [solver, basis] : {std::pair{"amdm", "dct"}, std::pair{"admm", "dtc"}, std::pair{"tsvd", "tv"}}) {
+    options.solvers = {solver};
+    options.bases = {basis};
+    const auto refused = plan_sweep(some_board(), options, 64);
+    REQUIRE_FALSE(refused.has_value());
+    CHECK(refused.error().code == hal::ErrorCode::usage);
+  }
+}
+
+TEST_CASE("what takes minutes on a large eye is left out with a note, unless it is asked for") {
+  const auto has = [](const SweepPlan& plan, SolverKind solver, Precision precision) {
+    return std::any_of(plan.curves.begin(), plan.curves.end(), [&](const PlannedCurve& p) {
+      return p.curve.solver == solver && p.curve.precision == precision;
+    });
+  };
+  CHECK(has(plan_of({}), SolverKind::tsvd, Precision::f32));
+  CHECK(has(plan_of({}), SolverKind::admm, Precision::f64));
+  const SweepPlan large = plan_of({}, 5000);
+  CHECK_FALSE(has(large, SolverKind::tsvd, Precision::f32));
+  CHECK_FALSE(has(large, SolverKind::admm, Precision::f64));
+  CHECK(has(large, SolverKind::admm, Precision::f32));
+  CHECK(large.notes.size() == 3);
+  ParetoOptions options;
+  options.solvers = {"tsvd"};
+  CHECK(has(plan_of(options, 5000), SolverKind::tsvd, Precision::f32));
+}
