@@ -45,9 +45,12 @@ void add_scene_options(CLI::App& command, RunOptions& o) {
 
 void add_solver_options(CLI::App& command, RunOptions& o) {
   command.add_option("--deadline", o.deadline_ms,
-                     "ms from the start of exposure to the published picture: as many iterations as fit are used, by "
-                     "timing real solves first, and later pictures are counted");
-  command.add_option("--iterations", o.iterations, "a frame (default: the board's); with --deadline the most");
+                     "ms from the start of exposure to the published picture: the most accurate point that `compueye "
+                     "pareto` has stored and that leaves a fifth of it as head-room, with faster ones to step down to "
+                     "while pictures are late; without stored points as many of the board's iterations as fit, by "
+                     "timing real solves first. Late pictures are published and counted");
+  command.add_option("--iterations", o.iterations,
+                     "a frame (default: the board's); with --deadline the most, fitted by trial");
   command.add_option("--threads", o.threads, "that share a frame's work (default: the board's); the same pictures");
   auto* lambda = command.add_option("--lambda", o.lambda, "weight of the penalty, by hand");
   command.add_option("--sigma", o.sigma, "noise of one sample in white pixels, for lambda by rule")->excludes(lambda);

@@ -15,10 +15,6 @@ constexpr std::size_t repeats = 5;
 /// A second of trials is enough patience for one point of the line.
 constexpr std::int64_t patience_ns = 1'000'000'000;
 
-double age_ms(double solve_ms, double period_ms) {
-  return period_ms + solve_ms + (solve_ms > period_ms ? period_ms : 0.0);
-}
-
 /// Median of some trials after one that warms the caches.
 hal::Result<double> median_ns(const TimedSolve& solve_ns, int iterations) {
   if (auto warm = solve_ns(iterations); !warm) return tl::unexpected(std::move(warm.error()));
@@ -37,6 +33,10 @@ hal::Result<double> median_ns(const TimedSolve& solve_ns, int iterations) {
 
 }  // namespace
 
+double predicted_age_ms(double solve_ms, double period_ms) noexcept {
+  return period_ms + solve_ms + (solve_ms > period_ms ? period_ms : 0.0);
+}
+
 hal::Result<SolveTime> measure_solve_time(const TimedSolve& solve_ns, int most_iterations) {
   const auto most = median_ns(solve_ns, most_iterations);
   if (!most) return tl::unexpected(most.error());
@@ -53,7 +53,7 @@ hal::Result<SolveTime> measure_solve_time(const TimedSolve& solve_ns, int most_i
 DeadlineChoice choose_iterations(double deadline_ms, double period_ms, const SolveTime& time, int most_iterations) {
   const auto solve_ms = [&](int iterations) { return time.of(iterations) / ns_per_ms; };
   const auto fits = [&](int iterations) {
-    return age_ms(solve_ms(iterations), period_ms) <= deadline_share * deadline_ms;
+    return predicted_age_ms(solve_ms(iterations), period_ms) <= deadline_share * deadline_ms;
   };
   int iterations = most_iterations;
   while (iterations > 1 && !fits(iterations)) --iterations;
@@ -63,9 +63,9 @@ DeadlineChoice choose_iterations(double deadline_ms, double period_ms, const Sol
   choice.iterations = iterations;
   choice.fits = fits(iterations);
   choice.solve_ms = solve_ms(iterations);
-  choice.age_ms = age_ms(choice.solve_ms, period_ms);
-  choice.least_ms = age_ms(solve_ms(1), period_ms) / deadline_share;
-  choice.for_most_ms = age_ms(solve_ms(most_iterations), period_ms) / deadline_share;
+  choice.age_ms = predicted_age_ms(choice.solve_ms, period_ms);
+  choice.least_ms = predicted_age_ms(solve_ms(1), period_ms) / deadline_share;
+  choice.for_most_ms = predicted_age_ms(solve_ms(most_iterations), period_ms) / deadline_share;
   return choice;
 }
 

@@ -32,9 +32,11 @@ struct DeadlineChoice {
 /// Share of the deadline that the prediction may use up: the rest is for the sink and for a machine that is busy.
 inline constexpr double deadline_share = 0.8;
 
-/// The largest number of iterations whose predicted age stays within deadline_share of the deadline. The age of a frame
-/// is its exposure (one frame period), its solution, and, when the solver is slower than the frames come, up to one
-/// period that the newest frame waited for the solver.
+/// The age of a frame: its exposure (one frame period), its solution, and, when the solver is slower than the frames
+/// come, up to one period that the newest frame waited for the solver.
+[[nodiscard]] double predicted_age_ms(double solve_ms, double period_ms) noexcept;
+
+/// The largest number of iterations whose predicted age stays within deadline_share of the deadline.
 [[nodiscard]] DeadlineChoice choose_iterations(double deadline_ms, double period_ms, const SolveTime& time,
                                                int most_iterations);
 

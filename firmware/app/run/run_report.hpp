@@ -11,6 +11,7 @@
 #include "firmware/app/eye/ready_eye.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/app/run/deadline_choice.hpp"
+#include "firmware/app/run/ladder_report.hpp"
 #include "firmware/pipeline/run_summary.hpp"
 
 namespace compueye::firmware {
@@ -41,7 +42,8 @@ struct RunReport {
   double distance_mm = 0.0;
   bool lossless = false;
   double setup_s = 0.0;
-  std::optional<DeadlineChoice> deadline;
+  std::optional<DeadlineChoice> deadline;  ///< by trial
+  std::optional<LadderReport> ladder;      ///< by stored points
   RunSummary summary;
   std::optional<PictureQuality> quality;  ///< mean over `measured` delivered frames
   std::size_t measured = 0;

@@ -43,10 +43,14 @@ Json operating_point(const EyeFigures& eye) {
           {"rho", eye.rho}};
 }
 
-Json deadline_json(const std::optional<DeadlineChoice>& choice, std::uint64_t misses) {
+Json deadline_json(const RunReport& report) {
+  const std::uint64_t misses = report.summary.deadline_misses;
+  if (report.ladder) return ladder_json(*report.ladder, misses);
+  const std::optional<DeadlineChoice>& choice = report.deadline;
   if (!choice) return nullptr;
   return {{"deadline_ms", choice->deadline_ms},
           {"fits", choice->fits},
+          {"chosen_by", "trial"},
           {"iterations", choice->iterations},
           {"most_iterations", choice->most_iterations},
           {"predicted_solve_ms", choice->solve_ms},
@@ -111,7 +115,7 @@ Json report_json(const RunReport& report) {
             {"age_ms", times_json(s.age)},
             {"correct_ms", times_json(s.correct)},
             {"write_ms", times_json(s.write)},
-            {"deadline", deadline_json(report.deadline, s.deadline_misses)},
+            {"deadline", deadline_json(report)},
             {"health", health(s)},
             {"quality", quality_json(report.quality)},
             {"quality_frames", report.measured},

@@ -65,6 +65,9 @@ std::string frames_text(const RunReport& report) {
                                  duration(static_cast<double>(s.wall_ns) / 1e9));
   if (report.deadline) {
     text += report.deadline->sentence() + "\n";
+  }
+  if (report.ladder) text += report.ladder->sentence + "\n" + steps_text(*report.ladder) + "\n";
+  if (report.deadline || report.ladder) {
     text += fmt::format("deadline misses: {} of {}\n", s.deadline_misses, s.frames.delivered);
   }
   return text;

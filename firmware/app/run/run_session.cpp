@@ -11,10 +11,15 @@
 #include "firmware/app/eye/ready_eye.hpp"
 #include "firmware/app/eye/scene_choice.hpp"
 #include "firmware/app/eye/simulated_board.hpp"
+#include "firmware/app/pareto/stored_points.hpp"
 #include "firmware/app/report/error_report.hpp"
 #include "firmware/app/report/progress_reporter.hpp"
 #include "firmware/app/report/visible_text.hpp"
+#include "firmware/app/run/deadline_watch.hpp"
 #include "firmware/app/run/frame_keeper.hpp"
+#include "firmware/app/run/ladder_solver.hpp"
+#include "firmware/app/run/point_choice.hpp"
+#include "firmware/app/run/point_ladder.hpp"
 #include "firmware/app/run/run_outputs.hpp"
 #include "firmware/app/run/run_report.hpp"
 #include "firmware/app/run/run_sheet.hpp"
@@ -32,6 +37,21 @@ namespace {
 
 using hal::ErrorCode;
 using hal::Result;
+
+LadderReport ladder_report(const PointChoice& choice, const Sweep& points) {
+  LadderReport ladder;
+  ladder.deadline_ms = choice.deadline_ms;
+  ladder.age_ms = choice.age_ms;
+  ladder.fits = choice.fits;
+  ladder.memory_bytes = choice.memory_bytes;
+  for (const std::size_t i : choice.ladder) {
+    const MeasuredPoint& point = points.points[i];
+    ladder.rungs.push_back({point_text(point), point.levels[choice.level].quality.mean.nmse, point.p999_ms, 0});
+  }
+  ladder.sentence = sentence(choice, points);
+  if (!points.cut_short.empty()) ladder.sentence += "; the stored points are partial: " + points.cut_short;
+  return ladder;
+}
 
 /// From the board to the report, step by step; each step is a member, and what the next ones need stays here.
 class RunSession {
@@ -53,9 +73,14 @@ class RunSession {
  private:
   Result<void> prepare();
   Result<void> make_eye();
+  Result<void> choose_eye(const recon::Progress& ask);
   Result<void> make_source();
+  [[nodiscard]] ReadyEye& eye() { return ladder_.eyes.front(); }
+  [[nodiscard]] const ReadyEye& eye() const { return ladder_.eyes.front(); }
+  [[nodiscard]] double period_ms() const { return 1e3 / board_.source.frame_rate_hz; }
   Result<void> fit();
   Result<void> run_pipeline();
+  Result<void> run_with(FrameSolver& solver, hal::FrameSink& sink, FrameObserver& observer);
   Result<void> compare_or_note();
   Result<void> compare();
   Result<void> measure_quality();
@@ -75,7 +100,8 @@ class RunSession {
   Board board_;
   sim::Scene scene_;
   hal::Image truth_;
-  std::optional<ReadyEye> eye_;
+  PointLadder ladder_;                     // its first eye is the board's, its rungs are empty without stored points
+  std::vector<std::string> choice_notes_;  // said when the set-up no longer redraws its line
   std::unique_ptr<sim::SimulatedEye> source_;
   std::unique_ptr<FrameKeeper> keeper_;
   hal::Image conventional_;
@@ -113,22 +139,51 @@ Result<void> RunSession::make_eye() {
   const std::int64_t begin_ns = clock_.now_ns();
   {
     ProgressReporter progress(clock_);
-    const auto ask = [&](std::string_view what, double done, double total) {
+    const recon::Progress ask = [&](std::string_view what, double done, double total) {
       progress.update(what, done, total);
       return !signals_.requested().load(std::memory_order_relaxed);
     };
-    EyeRequest request{std::nullopt, options_.lambda, options_.sigma, std::nullopt, board_.folder / ".cache"};
-    if (options_.threads) request.threads = static_cast<int>(*options_.threads);
-    if (options_.iterations) request.iterations = static_cast<int>(*options_.iterations);
-    auto eye = ReadyEye::make(board_, request, ask);
-    if (!eye) return tl::unexpected(std::move(eye.error()));
-    eye_ = std::move(*eye);
+    if (auto chosen = choose_eye(ask); !chosen) return chosen;
     progress.update("simulated eye", 0.0, 0.0);
     if (auto made = make_source(); !made) return made;
     progress.finish();
   }
-  for (const std::string& sentence : eye_->notes()) note(sentence);
+  for (const std::string& sentence : choice_notes_) note(sentence);
+  for (const ReadyEye& one : ladder_.eyes) {
+    for (const std::string& sentence : one.notes()) note(sentence);
+  }
   report_.setup_s = static_cast<double>(clock_.now_ns() - begin_ns) / 1e9;
+  return {};
+}
+
+/// From stored points where a deadline asks for them; otherwise, or when there are none that fit, what the board says.
+Result<void> RunSession::choose_eye(const recon::Progress& ask) {
+  const auto living = living_response(board_, ask);
+  if (!living) return tl::unexpected(living.error());
+  EyeRequest request{std::nullopt, options_.lambda, options_.sigma, std::nullopt, board_.folder / ".cache"};
+  if (options_.threads) request.threads = static_cast<int>(*options_.threads);
+  // Iterations, threads or lambda by hand say what to run; nothing that was measured goes with them.
+  if (options_.deadline_ms && !options_.iterations && !options_.threads && !options_.lambda) {
+    const auto points = load_points(request.cache, points_key(board_, living->response));
+    if (points) {
+      const PointChoice choice =
+          choose_points(*points, options_.sigma.value_or(board_.noise_sigma()), *options_.deadline_ms, period_ms());
+      auto ladder = make_ladder(board_, *living, *points, choice, request, ask);
+      if (!ladder) return tl::unexpected(std::move(ladder.error()));
+      ladder_ = std::move(*ladder);
+      report_.ladder = ladder_report(choice, *points);
+      choice_notes_.push_back(report_.ladder->sentence);
+      return {};
+    }
+    choice_notes_.push_back(
+        fmt::format("no stored points to choose from, so iterations are fitted by trial; `compueye pareto --board {}` "
+                    "measures them: {}",
+                    options_.board.string(), points.error().text()));
+  }
+  if (options_.iterations) request.iterations = static_cast<int>(*options_.iterations);
+  auto made = ReadyEye::make(board_, *living, request, ask);
+  if (!made) return tl::unexpected(std::move(made.error()));
+  ladder_.eyes.push_back(std::move(*made));
   return {};
 }
 
@@ -145,10 +200,10 @@ Result<void> RunSession::make_source() {
 
 Result<void> RunSession::fit() {
   const auto frame =
-      take_trial_frame(board_, correction_settings(board_, eye_->sees()), *source_, clock_, signals_.requested());
+      take_trial_frame(board_, correction_settings(board_, eye().sees()), *source_, clock_, signals_.requested());
   if (!frame) return tl::unexpected(frame.error());
-  if (options_.deadline_ms) {
-    const auto choice = fit_deadline(*options_.deadline_ms, 1e3 / board_.source.frame_rate_hz, *frame, *eye_, clock_);
+  if (options_.deadline_ms && ladder_.rungs.empty()) {
+    const auto choice = fit_deadline(*options_.deadline_ms, period_ms(), *frame, eye(), clock_);
     if (!choice) return tl::unexpected(choice.error());
     report_.deadline = *choice;
     note(choice->sentence());
@@ -166,34 +221,47 @@ PipelineSettings RunSession::pipeline_settings() const {
   // The simulated device counts its time from its own power-on, as a real one does.
   settings.device_clock = DeviceClock::free_running;
   settings.silence_limit_ns += static_cast<std::int64_t>(2e9 / std::max(board_.source.frame_rate_hz, 1e-3));
-  settings.correction = correction_settings(board_, eye_->sees());
+  settings.correction = correction_settings(board_, eye().sees());
   return settings;
 }
 
 void RunSession::fill_figures() {
-  const recon::Reconstructor& r = eye_->reconstructor();
+  const recon::Reconstructor& r = eye().reconstructor();
   report_.eye = {.board = board_.name,
                  .source = board_.source.kind + " " + board_.source.serial,
                  .ommatidia = board_.eye.ommatidia(),
-                 .blind = static_cast<int>(std::count(eye_->sees().begin(), eye_->sees().end(), 0)),
+                 .blind = static_cast<int>(std::count(eye().sees().begin(), eye().sees().end(), 0)),
                  .dead = static_cast<int>(board_.sensor.dead.size()),
                  .image_rows = r.image_rows(),
                  .image_cols = r.image_cols(),
                  .frame_rate_hz = board_.source.frame_rate_hz,
-                 .lambda = eye_->lambda(),
+                 .lambda = eye().lambda(),
                  .rho = r.plan().rho,
                  .point = r.operating_point(),
-                 .factor = eye_->factor_origin(),
+                 .factor = eye().factor_origin(),
                  .workspace_bytes = r.required_bytes(),
                  .table_bytes = r.table_bytes()};
 }
 
 Result<void> RunSession::run_pipeline() {
   fill_figures();
-  ReconstructorSolver solver(eye_->reconstructor());
   const auto sinks = make_sinks(options_, clock_, report_.files);
-  keeper_ = std::make_unique<FrameKeeper>(solver.format(), frames());
-  auto pipeline = Pipeline::create(pipeline_settings(), *source_, solver, *sinks, clock_, keeper_.get());
+  keeper_ = std::make_unique<FrameKeeper>(hal::FrameFormat{truth_.rows, truth_.cols}, frames());
+  if (ladder_.rungs.empty()) {
+    ReconstructorSolver solver(eye().reconstructor());
+    return run_with(solver, *sinks, *keeper_);
+  }
+  LadderSolver solver(ladder_);
+  DeadlineWatch watch(solver, clock_, *keeper_);
+  auto done = run_with(solver, *sinks, watch);
+  for (std::size_t r = 0; r < watch.frames().size(); ++r) report_.ladder->rungs[r].frames = watch.frames()[r];
+  report_.ladder->steps_down = watch.rule().steps_down();
+  report_.ladder->steps_up = watch.rule().steps_up();
+  return done;
+}
+
+Result<void> RunSession::run_with(FrameSolver& solver, hal::FrameSink& sink, FrameObserver& observer) {
+  auto pipeline = Pipeline::create(pipeline_settings(), *source_, solver, sink, clock_, &observer);
   if (!pipeline) return tl::unexpected(std::move(pipeline.error()));
   std::unique_ptr<RunWatch> watch;
   if (!shows_pictures(options_)) watch = std::make_unique<RunWatch>(*keeper_, frames());

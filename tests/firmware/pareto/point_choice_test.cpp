@@ -1,0 +1,90 @@
+#include "firmware/app/run/point_choice.hpp"
+
+#include <doctest/doctest.h>
+
+#include "firmware/app/run/deadline_choice.hpp"
+#include "tests/firmware/pareto/some_sweep.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+using compueye::test::some_sweep;
+
+namespace {
+
+constexpr double period_ms = 10.0;
+
+Sweep falling() {
+  return some_sweep({{2, 1, 0.5}, {5, 2, 0.3}, {10, 4, 0.2}, {20, 8, 0.1}, {40, 16, 0.05}, {80, 32, 0.045}});
+}
+
+}  // namespace
+
+TEST_CASE("the most accurate point whose 99.9th percentile leaves the head-room") {
+  const Sweep sweep = falling();
+  for (const double deadline_ms : {15.0, 18.0, 24.0, 40.0, 60.0, 200.0}) {
+    CAPTURE(deadline_ms);
+    const PointChoice choice = choose_points(sweep, 0.3, deadline_ms, period_ms);
+    REQUIRE(choice.fits);
+    CHECK(choice.age_ms <= deadline_share * deadline_ms);
+    const std::size_t chosen = choice.ladder.front();
+    CHECK(choice.age_ms == doctest::Approx(predicted_age_ms(sweep.points[chosen].p999_ms, period_ms)));
+    if (chosen + 1 == sweep.points.size()) continue;
+    CHECK(predicted_age_ms(sweep.points[chosen + 1].p999_ms, period_ms) > deadline_share * deadline_ms);
+  }
+}
+
+TEST_CASE("the ladder holds faster points only, each by half again, and not many") {
+  const Sweep sweep = falling();
+  const PointChoice choice = choose_points(sweep, 0.3, 200.0, period_ms);
+  REQUIRE(choice.ladder.size() == most_rungs);
+  CHECK(choice.ladder == std::vector<std::size_t>{5, 4, 3, 2});
+  for (std::size_t r = 1; r < choice.ladder.size(); ++r) {
+    CHECK(sweep.points[choice.ladder[r]].p999_ms * rung_speed_up <= sweep.points[choice.ladder[r - 1]].p999_ms);
+  }
+  CHECK(choice.memory_bytes == 1100);  // of one curve: shared
+  const Sweep close = some_sweep({{10, 7.9, 0.2}, {11, 8, 0.19}});
+  CHECK(choose_points(close, 0.3, 1000.0, period_ms).ladder == std::vector<std::size_t>{1});
+}
+
+TEST_CASE("points of another curve cost memory of their own") {
+  const Sweep sweep = some_sweep({{2, 1, 0.5}, {5, 2, 0.3, recon::BasisKind::tv}, {10, 4, 0.2}});
+  const PointChoice choice = choose_points(sweep, 0.3, 1000.0, period_ms);
+  CHECK(choice.ladder.size() == 3);
+  CHECK(choice.memory_bytes == 2200);
+  Sweep huge = sweep;
+  huge.points[1].table_bytes = most_ladder_bytes + 1;
+  CHECK(choose_points(huge, 0.3, 1000.0, period_ms).ladder == std::vector<std::size_t>{2, 0});
+}
+
+TEST_CASE("a point that is slower and no better is never chosen, nor stepped to") {
+  const Sweep sweep = some_sweep({{2, 1, 0.2}, {5, 2, 0.3}, {10, 4, 0.1}});
+  CHECK(choose_points(sweep, 0.3, 1000.0, period_ms).ladder == std::vector<std::size_t>{2, 0});
+}
+
+TEST_CASE("the noise level nearest to the board's sigma judges") {
+  Sweep sweep = some_sweep({{2, 1, 0.2}, {10, 4, 0.1}});
+  sweep.points[0].levels[1].quality.mean.nmse = 0.05;
+  CHECK(choose_points(sweep, 0.4, 1000.0, period_ms).ladder.front() == 1);
+  const PointChoice noisy = choose_points(sweep, 1.0, 1000.0, period_ms);
+  CHECK(noisy.level == 1);
+  CHECK(noisy.ladder.front() == 0);
+  CHECK(choose_points(sweep, 0.0, 1000.0, period_ms).level == 0);
+}
+
+TEST_CASE("a deadline that nothing meets gets the fastest point and says so") {
+  const Sweep sweep = falling();
+  const PointChoice choice = choose_points(sweep, 0.3, 5.0, period_ms);
+  CHECK_FALSE(choice.fits);
+  CHECK(choice.ladder == std::vector<std::size_t>{0});
+  CHECK(sentence(choice, sweep).find("cannot be kept") != std::string::npos);
+}
+
+TEST_CASE("the sentence names the point, why it, and what comes after it") {
+  const Sweep sweep = falling();
+  const std::string text = sentence(choose_points(sweep, 0.3, 60.0, period_ms), sweep);
+  CAPTURE(text);
+  for (const char* part : {"60.0 ms", "admm dct, 40 iterations", "NMSE 0.0500", "17.6 ms", "6 stored points",
+                           "steps down to admm dct, 20 iterations, admm dct, 10 iterations", "1.07 KiB"}) {
+    CHECK(text.find(part) != std::string::npos);
+  }
+}
