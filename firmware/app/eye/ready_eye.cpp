@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "recon/lambda_rule.hpp"
-#include "recon/penalty_rule.hpp"
 #include "recon/quantised_response.hpp"
 
 namespace compueye::firmware {

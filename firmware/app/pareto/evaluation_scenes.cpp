@@ -35,14 +35,29 @@ Result<void> check_name(const std::string& name) {
 }
 
 Result<EvaluationScene> drawn(const Board& board, const sim::Optics& optics, const std::string& name,
-                              std::uint64_t seed) {
+                              std::uint64_t seed, bool moving) {
   const auto scene = choose_scene(board, {name, seed, std::nullopt});
   if (!scene) return tl::unexpected(scene.error());
   auto truth = sim::scene_truth(*scene, board.object);
   if (!truth) return tl::unexpected(std::move(truth.error()));
   auto signals = optics.expose(*scene);
   if (!signals) return tl::unexpected(std::move(signals.error()));
-  return EvaluationScene{name, seed, std::move(*truth), std::move(*signals)};
+  EvaluationScene drawing{name, seed, std::move(*truth), std::move(*signals), {}};
+  for (std::size_t left = moving_frames; moving && left > 0; --left) {
+    sim::Scene earlier = *scene;
+    earlier.picture = before_arrival(scene->picture, left);
+    auto before = optics.expose(earlier);
+    if (!before) return tl::unexpected(std::move(before.error()));
+    drawing.moving.push_back(std::move(*before));
+  }
+  return drawing;
+}
+
+/// Signals of frame `frame` of a sequence. The piece waits outside until it moves.
+const std::vector<double>& signals_of(const EvaluationScene& scene, Motion motion, std::size_t frame) {
+  const std::size_t left = sequence_frames - 1 - frame;
+  if (motion != Motion::sprite || left == 0) return scene.signals;
+  return scene.moving[moving_frames - std::min(left, moving_frames)];
 }
 
 }  // namespace
@@ -54,7 +69,7 @@ std::vector<std::string> usual_scenes(const Board& board) {
 }
 
 Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board, const std::vector<std::string>& names,
-                                                            const recon::Progress& progress) {
+                                                            bool moving, const recon::Progress& progress) {
   for (const std::string& name : names) {
     if (auto known = check_name(name); !known) return tl::unexpected(std::move(known.error()));
   }
@@ -66,7 +81,7 @@ Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board, 
       return hal::fail(ErrorCode::interrupted, board.name, "stopped before anything was measured");
     }
     const std::size_t i = scenes.size();
-    auto scene = drawn(board, optics, names[i % names.size()], first_evaluation_seed + i);
+    auto scene = drawn(board, optics, names[i % names.size()], first_evaluation_seed + i, moving);
     if (!scene) return tl::unexpected(std::move(scene.error()));
     scenes.push_back(std::move(*scene));
   }
@@ -81,8 +96,9 @@ Board with_noise(const Board& board, double times) {
   return noisy;
 }
 
-Result<std::vector<EvaluationFrame>> take_frames(const Board& board, const std::vector<EvaluationScene>& scenes,
-                                                 const std::vector<std::uint8_t>& sees, const NoiseLevel& level) {
+Result<std::vector<FrameSequence>> take_frames(const Board& board, const std::vector<EvaluationScene>& scenes,
+                                               const std::vector<std::uint8_t>& sees, const NoiseLevel& level,
+                                               Motion motion) {
   const Board noisy = with_noise(board, level.times);
   const auto sensor = sim::Sensor::create(simulated_eye_settings(noisy, {}, 0).sensor);
   if (!sensor) return tl::unexpected(sensor.error());
@@ -99,23 +115,26 @@ Result<std::vector<EvaluationFrame>> take_frames(const Board& board, const std::
   for (const int dead : board.sensor.dead) valid[static_cast<std::size_t>(dead)] = 0;
   std::vector<double> levels_lsb(channels);
   std::vector<std::int32_t> codes(channels);
-  std::vector<EvaluationFrame> frames;
+  std::vector<FrameSequence> sequences;
   for (const EvaluationScene& scene : scenes) {
-    hal::SampleBlock block;
-    block.flags.saturated = sensor->digitise(scene.signals, scene.seed, 0, levels_lsb, codes);
-    block.codes = codes;
-    block.valid = valid;
-    block.bits = board.sensor.bits;
-    EvaluationFrame frame{std::vector<float>(channels), std::vector<float>(channels)};
-    const CorrectionReport report = correction->apply(block, frame.y, frame.weights);
-    if (!report.usable) {
-      return hal::fail(ErrorCode::mismatch, board.place("sensor", "max_missing_share"),
-                       fmt::format("a frame of {} lacks {} channels, {} of them saturated, and would be dropped",
-                                   scene.name, report.masked, report.saturated));
+    FrameSequence& sequence = sequences.emplace_back();
+    for (std::size_t f = motion == Motion::none ? sequence_frames - 1 : 0; f < sequence_frames; ++f) {
+      hal::SampleBlock block;
+      block.flags.saturated = sensor->digitise(signals_of(scene, motion, f), scene.seed, f, levels_lsb, codes);
+      block.codes = codes;
+      block.valid = valid;
+      block.bits = board.sensor.bits;
+      EvaluationFrame frame{std::vector<float>(channels), std::vector<float>(channels)};
+      const CorrectionReport report = correction->apply(block, frame.y, frame.weights);
+      if (!report.usable) {
+        return hal::fail(ErrorCode::mismatch, board.place("sensor", "max_missing_share"),
+                         fmt::format("a frame of {} lacks {} channels, {} of them saturated, and would be dropped",
+                                     scene.name, report.masked, report.saturated));
+      }
+      sequence.push_back(std::move(frame));
     }
-    frames.push_back(std::move(frame));
   }
-  return frames;
+  return sequences;
 }
 
 }  // namespace compueye::firmware

@@ -7,6 +7,7 @@
 
 #include "firmware/app/board/board.hpp"
 #include "firmware/app/eye/picture_quality.hpp"
+#include "firmware/app/pareto/motion.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
 #include "recon/factor.hpp"
@@ -22,7 +23,8 @@ struct EvaluationScene {
   std::string name;
   std::uint64_t seed = 0;
   hal::Image truth;
-  std::vector<double> signals;  ///< M, without noise
+  std::vector<double> signals;              ///< M, without noise
+  std::vector<std::vector<double>> moving;  ///< of the frames in which its piece moves; empty when not asked for
 };
 
 /// Corrected samples of one scene.
@@ -30,6 +32,9 @@ struct EvaluationFrame {
   std::vector<float> y;
   std::vector<float> weights;
 };
+
+/// The frames of one scene in order, the judged one last.
+using FrameSequence = std::vector<EvaluationFrame>;
 
 /// A dark or a bright day: noise as a multiple of the board's own.
 struct NoiseLevel {
@@ -41,18 +46,19 @@ struct NoiseLevel {
 /// 32 x 32), single dots otherwise.
 [[nodiscard]] std::vector<std::string> usual_scenes(const Board& board);
 
-/// Twelve scenes, the names in turn, each with a seed of its own. Errors: usage for a scene that is no built-in one or
-/// has but one drawing (fig2); those of the optics; interrupted.
+/// Twelve scenes, the names in turn, each with a seed of its own, and with `moving` the frames before them. Errors:
+/// usage for a scene that is no built-in one or has but one drawing (fig2); those of the optics; interrupted.
 [[nodiscard]] hal::Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board,
                                                                                const std::vector<std::string>& names,
+                                                                               bool moving,
                                                                                const recon::Progress& progress);
 
-/// What the board's sensor makes of every scene at this noise, and its correction of the codes. `sees` as in
-/// CorrectionSettings. Error mismatch when a frame would be dropped.
-[[nodiscard]] hal::Result<std::vector<EvaluationFrame>> take_frames(const Board& board,
-                                                                    const std::vector<EvaluationScene>& scenes,
-                                                                    const std::vector<std::uint8_t>& sees,
-                                                                    const NoiseLevel& level);
+/// What the board's sensor makes of every scene at this noise, and its correction of the codes. The judged frame is the
+/// same for every motion. `sees` as in CorrectionSettings. Error mismatch when a frame would be dropped.
+[[nodiscard]] hal::Result<std::vector<FrameSequence>> take_frames(const Board& board,
+                                                                  const std::vector<EvaluationScene>& scenes,
+                                                                  const std::vector<std::uint8_t>& sees,
+                                                                  const NoiseLevel& level, Motion motion);
 
 /// The board with a sensor whose noise of a sample, rounding included, is so many times its own.
 [[nodiscard]] Board with_noise(const Board& board, double times);

@@ -53,7 +53,7 @@ std::string axis_of(char axis, double least, double greatest) {
     const double decade = std::pow(10.0, exponent);
     for (const double step : {1.0, 2.0, 5.0}) {
       if (decade * step < lo || decade * step > hi || (step > 1.0 && !fine)) continue;
-      ticks += fmt::format("{}'{:.3g}' {}", ticks.empty() ? "" : ", ", decade * step, decade * step);
+      ticks += fmt::format("{}'{:g}' {}", ticks.empty() ? "" : ", ", decade * step, decade * step);
     }
   }
   return fmt::format("set {0}range [{1}:{2}]\nset {0}tics ({3})\n", axis, lo, hi, ticks);

@@ -25,13 +25,16 @@ hal::Result<MeasuredPoint> PointMeter::judge(const Curve& curve, CurveEyes& eyes
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     recon::Reconstructor& reconstructor = eyes.by_level[l];
     if (auto set = reconstructor.set_iterations(iterations); !set) return tl::unexpected(std::move(set.error()));
-    ReconstructorSolver solver(reconstructor);
     hal::Image picture(reconstructor.image_rows(), reconstructor.image_cols());
     std::vector<PictureQuality> pictures;
     double objective = 0.0;
     for (std::size_t s = 0; s < scenes_.size(); ++s) {
-      if (!go_on_()) return stopped();
-      const recon::FrameInfo info = solver.solve(frames_[l][s].y, frames_[l][s].weights, picture.pixels);
+      recon::FrameInfo info;
+      ReconstructorSolver solver(reconstructor);  // a workspace that remembers no other scene
+      for (const EvaluationFrame& frame : frames_[l][s]) {
+        if (!go_on_()) return stopped();
+        info = solver.solve(frame.y, frame.weights, picture.pixels);
+      }
       if (info.health == recon::Health::invalid) {
         return hal::fail(ErrorCode::out_of_range, title(curve),
                          fmt::format("could not solve a frame of {} with {} iterations: its numbers left the range of "
@@ -59,9 +62,12 @@ hal::Result<void> PointMeter::time(const recon::Reconstructor& reconstructor, co
                                    FrameTimes& times) const {
   ReconstructorSolver solver(reconstructor);
   std::vector<float> picture(static_cast<std::size_t>(reconstructor.pixels()));
-  const std::vector<EvaluationFrame>& frames = frames_.front();
+  std::vector<const EvaluationFrame*> frames;
+  for (const FrameSequence& sequence : frames_.front()) {
+    for (const EvaluationFrame& frame : sequence) frames.push_back(&frame);
+  }
   const auto solve = [&](std::size_t i) {
-    const EvaluationFrame& frame = frames[i % frames.size()];
+    const EvaluationFrame& frame = *frames[i % frames.size()];
     static_cast<void>(solver.solve(frame.y, frame.weights, picture));
   };
   if (!go_on_()) return stopped();

@@ -24,24 +24,25 @@ class PointMeter {
  public:
   using GoOn = std::function<bool()>;  ///< asked before every frame; false ends the work with error interrupted
 
-  /// Everything must outlive the meter. `frames` has an entry a level.
+  /// Everything must outlive the meter. `frames` has the sequences of every scene, by level.
   PointMeter(const std::vector<EvaluationScene>& scenes, const std::vector<NoiseLevel>& levels,
-             const std::vector<std::vector<EvaluationFrame>>& frames, const hal::Clock& clock, GoOn go_on)
+             const std::vector<std::vector<FrameSequence>>& frames, const hal::Clock& clock, GoOn go_on)
       : scenes_(scenes), levels_(levels), frames_(frames), clock_(clock), go_on_(std::move(go_on)) {}
 
-  /// Quality and bytes; no times. Leaves every eye with these iterations. Errors: out_of_range (a frame that cannot be
-  /// solved), interrupted.
+  /// Quality of the last picture of every sequence, each begun cold, and bytes; no times. Leaves every eye with these
+  /// iterations. Errors: out_of_range (a frame that cannot be solved), interrupted.
   [[nodiscard]] hal::Result<MeasuredPoint> judge(const Curve& curve, CurveEyes& eyes, int iterations) const;
 
-  /// Times frames of the first level after one that warms the caches. Error interrupted, with the times so far added.
-  /// Wall time is what a deadline sees; the processor time beside it tells whether the machine was busy otherwise.
+  /// Times frames of the first level, sequence after sequence, after one that warms the caches. Error interrupted, with
+  /// the times so far added. Wall time is what a deadline sees; the processor time beside it tells whether the machine
+  /// was busy otherwise.
   [[nodiscard]] hal::Result<void> time(const recon::Reconstructor& reconstructor, const TimingLimit& limit,
                                        FrameTimes& times) const;
 
  private:
   const std::vector<EvaluationScene>& scenes_;
   const std::vector<NoiseLevel>& levels_;
-  const std::vector<std::vector<EvaluationFrame>>& frames_;
+  const std::vector<std::vector<FrameSequence>>& frames_;
   const hal::Clock& clock_;
   GoOn go_on_;
 };

@@ -63,12 +63,16 @@ class Sweeper {
         ask_([this](std::string_view, double, double) { return limits_.go_on(); }),
         sweep_(sweep) {}
 
-  Result<void> take(const std::vector<EvaluationScene>& scenes) {
+  Result<void> take(const std::vector<EvaluationScene>& scenes, const SweepPlan& plan) {
     scenes_ = &scenes;
-    for (const NoiseLevel& level : sweep_.levels) {
-      auto frames = take_frames(board_, scenes, living_.sees, level);
-      if (!frames) return tl::unexpected(std::move(frames.error()));
-      frames_.push_back(std::move(*frames));
+    for (const PlannedCurve& planned : plan.curves) {
+      auto& by_level = frames_[planned.curve.motion];
+      for (const NoiseLevel& level : sweep_.levels) {
+        if (by_level.size() == sweep_.levels.size()) break;
+        auto frames = take_frames(board_, scenes, living_.sees, level, planned.curve.motion);
+        if (!frames) return tl::unexpected(std::move(frames.error()));
+        by_level.push_back(std::move(*frames));
+      }
     }
     return {};
   }
@@ -130,8 +134,8 @@ class Sweeper {
   }
 
  private:
-  [[nodiscard]] PointMeter meter() {
-    return PointMeter(*scenes_, sweep_.levels, frames_, clock_, [this] { return limits_.go_on(); });
+  [[nodiscard]] PointMeter meter(const Curve& curve) {
+    return PointMeter(*scenes_, sweep_.levels, frames_.at(curve.motion), clock_, [this] { return limits_.go_on(); });
   }
 
   Result<void> measure(const PlannedCurve& planned) {
@@ -145,11 +149,11 @@ class Sweeper {
         const MeasuredPoint& last = sweep_.points.back();
         if (last.median_ms * iterations / last.iterations > options_.longest_ms) break;
       }
-      auto point = meter().judge(planned.curve, *eyes, iterations);
+      auto point = meter(planned.curve).judge(planned.curve, *eyes, iterations);
       if (!point) return tl::unexpected(std::move(point.error()));
       FrameTimes times;
-      auto timed =
-          meter().time(eyes->by_level.front(), {most_timed, options_.quick ? quick_first_ns : first_ns}, times);
+      auto timed = meter(planned.curve)
+                       .time(eyes->by_level.front(), {most_timed, options_.quick ? quick_first_ns : first_ns}, times);
       if (times.count() == 0) return timed;
       sweep_.points.push_back(std::move(*point));
       times_.push_back(std::move(times));
@@ -185,7 +189,8 @@ class Sweeper {
     if (times_[i].count() >= wanted) return;
     const double share_s = std::min(limits_.left_s() / static_cast<double>(left), 1e9);
     static_cast<void>(
-        meter().time(eye, {wanted - times_[i].count(), static_cast<std::int64_t>(share_s * 1e9)}, times_[i]));
+        meter(sweep_.points[i].curve)
+            .time(eye, {wanted - times_[i].count(), static_cast<std::int64_t>(share_s * 1e9)}, times_[i]));
     limits_.advance(1.0);
   }
 
@@ -204,8 +209,8 @@ class Sweeper {
   recon::Progress ask_;
   Sweep& sweep_;
   const std::vector<EvaluationScene>* scenes_ = nullptr;
-  std::vector<std::vector<EvaluationFrame>> frames_;  // by level
-  std::vector<FrameTimes> times_;                     // by point
+  std::map<Motion, std::vector<std::vector<FrameSequence>>> frames_;  // by level and scene
+  std::vector<FrameTimes> times_;                                     // by point
 };
 
 Sweep head_of(const Board& board, const ParetoOptions& options, const LivingResponse& living) {
@@ -244,13 +249,15 @@ Result<Sweep> sweep(const Board& board, const ParetoOptions& options, const hal:
   auto plan = plan_sweep(board, options, result.seeing);
   if (!plan) return tl::unexpected(std::move(plan.error()));
   result.notes = std::move(plan->notes);
-  const auto scenes = make_evaluation_scenes(board, result.scenes, progress);
+  const bool moving = std::any_of(plan->curves.begin(), plan->curves.end(),
+                                  [](const PlannedCurve& planned) { return planned.curve.motion == Motion::sprite; });
+  const auto scenes = make_evaluation_scenes(board, result.scenes, moving, progress);
   if (!scenes) return tl::unexpected(scenes.error());
   auto conventional = conventional_figures(board, *scenes, result.levels, progress);
   if (!conventional) return tl::unexpected(std::move(conventional.error()));
   result.conventional = std::move(*conventional);
   Sweeper sweeper(board, options, *living, clock, progress, result);
-  if (auto taken = sweeper.take(*scenes); !taken) return tl::unexpected(std::move(taken.error()));
+  if (auto taken = sweeper.take(*scenes, *plan); !taken) return tl::unexpected(std::move(taken.error()));
   if (auto measured = sweeper.measure_all(*plan); !measured) return tl::unexpected(std::move(measured.error()));
   if (result.points.empty()) {
     return hal::fail(hal::ErrorCode::interrupted, board.name, "stopped before the first point was measured");

@@ -31,6 +31,9 @@ Json point_json(const MeasuredPoint& point) {
             {"constraint", recon::name(point.curve.constraint)},
             {"precision", name_of(point.curve.precision)},
             {"operator", recon::name(point.op)},
+            {"operator_asked", point.curve.op ? Json(recon::name(*point.curve.op)) : Json()},
+            {"warm_start", point.curve.motion != Motion::none},
+            {"motion", name(point.curve.motion)},
             {"iterations", point.iterations},
             {"median_ms", point.median_ms},
             {"p999_ms", point.p999_ms},
@@ -58,14 +61,21 @@ Kind kind_from(const Json& json, const char* key, std::span<const recon::Named<K
   return found->kind;
 }
 
-recon::OperatorKind operator_from(const Json& json) {
-  const std::string word = json.at("operator").get<std::string>();
+recon::OperatorKind operator_from(const Json& name) {
+  const std::string word = name.get<std::string>();
   constexpr int most_kinds = 256;  // of an enumeration in eight bits
   for (int k = 0; k < most_kinds; ++k) {
     const auto kind = static_cast<recon::OperatorKind>(k);
-    if (recon::name(kind) == word) return kind;
+    if (word != "unknown" && recon::name(kind) == word) return kind;
   }
   throw std::out_of_range(fmt::format("operator is '{}'", word));
+}
+
+Motion motion_from(const std::string& word) {
+  for (const Motion motion : {Motion::none, Motion::still, Motion::sprite}) {
+    if (name(motion) == word) return motion;
+  }
+  throw std::out_of_range(fmt::format("motion is '{}'", word));
 }
 
 /// Infinity, the PSNR of a perfect picture, is null in JSON.
@@ -84,7 +94,9 @@ MeasuredPoint point_from(const Json& json) {
   point.curve = {kind_from(json, "solver", recon::solver_names()), kind_from(json, "basis", recon::basis_names()),
                  kind_from(json, "constraint", recon::constraint_names()),
                  json.at("precision") == "f64" ? recon::Precision::f64 : recon::Precision::f32};
-  point.op = operator_from(json);
+  point.op = operator_from(json.at("operator"));
+  if (const Json& asked = json.at("operator_asked"); !asked.is_null()) point.curve.op = operator_from(asked);
+  point.curve.motion = motion_from(json.at("motion").get<std::string>());
   point.iterations = json.at("iterations").get<int>();
   point.median_ms = json.at("median_ms").get<double>();
   point.p999_ms = json.at("p999_ms").get<double>();

@@ -17,6 +17,7 @@ namespace compueye::firmware {
 namespace {
 
 using recon::BasisKind;
+using recon::OperatorKind;
 using recon::Precision;
 using recon::SolverKind;
 
@@ -30,6 +31,8 @@ struct SweepRow {
   int most_rows;  ///< seeing rows up to which it is swept without being asked for by name
   std::vector<int> iterations;
   std::vector<int> quick;
+  std::optional<OperatorKind> op = std::nullopt;  ///< absent: the board's, or the quickest
+  Motion motion = Motion::none;                   ///< of a warm start
 };
 
 /// What is swept. To sweep more, add a line.
@@ -37,14 +40,22 @@ const std::vector<SweepRow>& sweep_rows() {
   constexpr int large = 2000;  // rows from which a whole spectrum or a factor in double takes minutes
   static const std::vector<int> factored{1, 2, 3, 5, 8, 12, 20, 30, 50, 80, 120, 200}, few{2, 8, 30, 120};
   static const std::vector<int> first_order{10, 30, 100, 300, 1000, 3000}, few_first_order{30, 300};
+  static const std::vector<int> some{5, 12, 30, 80};
   static const std::vector<SweepRow> rows{
       {SolverKind::admm, Precision::f32, false, every_eye, factored, few},
-      {SolverKind::tikhonov, Precision::f32, false, every_eye, {1}, {1}},
+      {SolverKind::pdhg, Precision::f32, false, every_eye, factored, few},
+      {SolverKind::tikhonov, Precision::f32, false, large, {1}, {1}},
       {SolverKind::adm, Precision::f32, false, every_eye, factored, few},
       {SolverKind::chambolle_pock, Precision::f32, false, every_eye, first_order, few_first_order},
       {SolverKind::fista, Precision::f32, false, every_eye, first_order, few_first_order},
       {SolverKind::omp, Precision::f32, false, large, {5, 10, 20, 50}, {20}},
       {SolverKind::tsvd, Precision::f32, false, large, {1}, {1}},
+      {SolverKind::admm, Precision::f32, true, large, some, few, OperatorKind::dense},
+      {SolverKind::admm, Precision::f32, true, large, some, few, OperatorKind::csr},
+      {SolverKind::pdhg, Precision::f32, true, every_eye, some, few, OperatorKind::dense_runs_int8},
+      {SolverKind::pdhg, Precision::f32, true, every_eye, some, few, OperatorKind::dense_runs_bf16},
+      {SolverKind::pdhg, Precision::f32, true, every_eye, some, few, OperatorKind::dense_runs},
+      {SolverKind::pdhg, Precision::f32, true, every_eye, some, few, OperatorKind::csr},
       {SolverKind::admm, Precision::f64, true, large, factored, few},
   };
   return rows;
@@ -96,8 +107,12 @@ void add_row(const SweepRow& row, const Board& board, const ParetoOptions& optio
   for (const BasisKind basis : bases_of(row, board, options)) {
     for (const auto constraint : {board.reconstruction.constraint, recon::ConstraintKind::none}) {
       if (!recon::supports(row.solver, basis, constraint)) continue;
-      plan.curves.push_back(
-          {{row.solver, basis, constraint, row.precision}, iterations_of(row, basis, board, options.quick)});
+      const Curve curve{row.solver, basis, constraint, row.precision, row.op ? row.op : board.reconstruction.op,
+                        row.motion};
+      // A board that names a form of A has it in two lines of the table.
+      const bool there = std::any_of(plan.curves.begin(), plan.curves.end(),
+                                     [&](const PlannedCurve& other) { return other.curve == curve; });
+      if (!there) plan.curves.push_back({curve, iterations_of(row, basis, board, options.quick)});
       break;
     }
   }
@@ -111,7 +126,9 @@ std::string title(const Curve& curve) {
     text += ' ';
     text += recon::name(curve.basis);
   }
-  return curve.precision == Precision::f64 ? text + " f64" : text;
+  if (curve.precision == Precision::f64) text += " f64";
+  if (curve.op) text += ", " + std::string(recon::name(*curve.op));
+  return curve.motion == Motion::none ? text : text + ", warm, " + std::string(name(curve.motion));
 }
 
 hal::Result<SweepPlan> plan_sweep(const Board& board, const ParetoOptions& options, int seeing) {
@@ -123,9 +140,11 @@ hal::Result<SweepPlan> plan_sweep(const Board& board, const ParetoOptions& optio
     const std::string_view solver = recon::name(row.solver);
     if (!wanted(options.solvers, solver)) continue;
     if (seeing > row.most_rows && (options.solvers.empty() || row.boards_basis_only)) {
-      plan.notes.push_back(fmt::format("{}{} is left out: it takes minutes with more than {} seeing ommatidia{}",
-                                       solver, row.precision == Precision::f64 ? " in f64" : "", grouped(row.most_rows),
-                                       row.boards_basis_only ? "" : fmt::format("; --solvers {} asks for it", solver)));
+      const Curve form{row.solver, board.reconstruction.basis, {}, row.precision, row.op, row.motion};
+      plan.notes.push_back(
+          fmt::format("{} is left out: it takes too long or too much memory with more than {} seeing ommatidia{}",
+                      row.boards_basis_only ? title(form) : std::string(solver), grouped(row.most_rows),
+                      row.boards_basis_only ? "" : fmt::format("; --solvers {} asks for it", solver)));
       continue;
     }
     add_row(row, board, options, plan);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "firmware/app/board/board.hpp"
+#include "firmware/app/pareto/motion.hpp"
 #include "firmware/app/pareto/pareto_options.hpp"
 #include "hal/result.hpp"
 #include "recon/reconstructor.hpp"
@@ -16,11 +18,13 @@ struct Curve {
   recon::BasisKind basis = recon::BasisKind::identity;
   recon::ConstraintKind constraint = recon::ConstraintKind::none;
   recon::Precision precision = recon::Precision::f32;
+  std::optional<recon::OperatorKind> op = std::nullopt;  ///< absent: the quickest form of A
+  Motion motion = Motion::none;  ///< of the frames that a warm start goes on from; none: every frame starts cold
 
   bool operator==(const Curve&) const = default;
 };
 
-/// "admm dct", "admm dct f64": what a legend says.
+/// "admm dct", "admm dct f64", "pdhg dct, dense runs in int8", "pdhg dct, warm, still": what a legend says.
 [[nodiscard]] std::string title(const Curve& curve);
 
 /// A curve and how far it is followed.

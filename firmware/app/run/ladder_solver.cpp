@@ -20,7 +20,8 @@ recon::FrameInfo LadderSolver::solve(std::span<const float> y, std::span<const f
 std::size_t LadderSolver::rung_of(const recon::OperatingPoint& point) const noexcept {
   const auto same = [&](const PointLadder::Rung& rung) {
     return rung.point.solver == point.solver && rung.point.basis == point.basis &&
-           rung.point.precision == point.precision && rung.point.iterations == point.iterations;
+           rung.point.precision == point.precision && rung.point.op == point.op &&
+           rung.point.iterations == point.iterations;
   };
   return static_cast<std::size_t>(std::find_if(ladder_.rungs.begin(), ladder_.rungs.end(), same) -
                                   ladder_.rungs.begin());

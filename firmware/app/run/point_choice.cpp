@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "firmware/app/pareto/efficient_front.hpp"
 #include "firmware/app/report/number_text.hpp"
@@ -47,9 +48,13 @@ PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, 
   choice.level = nearest_level(sweep, sigma);
   std::vector<CostAndError> points;
   for (const MeasuredPoint& point : sweep.points) {
-    points.push_back({point.p999_ms, point.levels[choice.level].quality.mean.nmse});
+    // What a still scene makes of a warm start is more than a run can count on.
+    const bool counts = point.curve.motion != Motion::still;
+    const double nmse = point.levels[choice.level].quality.mean.nmse;
+    points.push_back({point.p999_ms, counts ? nmse : std::numeric_limits<double>::quiet_NaN()});
   }
-  const std::vector<std::size_t> front = efficient_front(points, least_gain);
+  std::vector<std::size_t> front = efficient_front(points, least_gain);
+  if (front.empty()) front.push_back(0);  // nothing but still scenes was measured
   std::size_t chosen = 0;
   for (std::size_t f = 0; f < front.size(); ++f) {
     if (predicted_age_ms(points[front[f]].cost, period_ms) > deadline_share * deadline_ms) continue;

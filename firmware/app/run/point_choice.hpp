@@ -25,7 +25,8 @@ inline constexpr std::uint64_t most_ladder_bytes = std::uint64_t{512} << 20U;  /
 
 /// The most accurate stored point (mean NMSE at the noise level nearest to `sigma`) whose 99.9th percentile of frame
 /// time keeps the predicted age within deadline_share of the deadline, and what to step down to. The age is that of
-/// choose_iterations(). When nothing fits, the fastest point alone. `sweep` has points.
+/// choose_iterations(). A warm start counts with what it made of a scene in which something moves. When nothing fits,
+/// the fastest point alone. `sweep` has points.
 [[nodiscard]] PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, double period_ms);
 
 /// Says which point was chosen and why.

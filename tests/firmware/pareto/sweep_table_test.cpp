@@ -90,7 +90,7 @@ TEST_CASE("what takes minutes on a large eye is left out with a note, unless it 
   CHECK_FALSE(has(large, SolverKind::tsvd, Precision::f32));
   CHECK_FALSE(has(large, SolverKind::admm, Precision::f64));
   CHECK(has(large, SolverKind::admm, Precision::f32));
-  CHECK(large.notes.size() == 3);
+  CHECK(large.notes.size() == 6);
   ParetoOptions options;
   options.solvers = {"tsvd"};
   CHECK(has(plan_of(options, 5000), SolverKind::tsvd, Precision::f32));
