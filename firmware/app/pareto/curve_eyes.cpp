@@ -15,6 +15,7 @@ Board with_curve(const Board& board, const Curve& curve) {
   settings.basis = curve.basis;
   settings.constraint = curve.constraint;
   settings.op = curve.op;
+  settings.warm_start = curve.motion != Motion::none;
   // Both were chosen for the board's own solver and basis; rho means the same where solver and metric are the same.
   settings.lambda = std::nullopt;
   if (curve.solver != board.reconstruction.solver ||

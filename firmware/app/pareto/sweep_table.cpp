@@ -41,9 +41,12 @@ const std::vector<SweepRow>& sweep_rows() {
   static const std::vector<int> factored{1, 2, 3, 5, 8, 12, 20, 30, 50, 80, 120, 200}, few{2, 8, 30, 120};
   static const std::vector<int> first_order{10, 30, 100, 300, 1000, 3000}, few_first_order{30, 300};
   static const std::vector<int> some{5, 12, 30, 80};
+  static const std::vector<int> warm{1, 2, 3, 5, 8, 12, 20}, few_warm{2, 5, 12};
   static const std::vector<SweepRow> rows{
       {SolverKind::admm, Precision::f32, false, every_eye, factored, few},
       {SolverKind::pdhg, Precision::f32, false, every_eye, factored, few},
+      {SolverKind::pdhg, Precision::f32, true, every_eye, warm, few_warm, {}, Motion::still},
+      {SolverKind::pdhg, Precision::f32, true, every_eye, warm, few_warm, {}, Motion::sprite},
       {SolverKind::tikhonov, Precision::f32, false, large, {1}, {1}},
       {SolverKind::adm, Precision::f32, false, every_eye, factored, few},
       {SolverKind::chambolle_pock, Precision::f32, false, every_eye, first_order, few_first_order},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "firmware/app/pareto/curve_eyes.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
 
@@ -94,4 +95,15 @@ TEST_CASE("what takes minutes on a large eye is left out with a note, unless it 
   ParetoOptions options;
   options.solvers = {"tsvd"};
   CHECK(has(plan_of(options, 5000), SolverKind::tsvd, Precision::f32));
+}
+
+TEST_CASE("what can go on from the last frame does so with and without motion, everything else starts cold") {
+  int warm = 0;
+  for (const PlannedCurve& planned : plan_of({}).curves) {
+    const Board board = with_curve(some_board(), planned.curve);
+    CHECK(board.reconstruction.warm_start == (planned.curve.motion != Motion::none));
+    CHECK((planned.curve.motion == Motion::none || planned.curve.solver == SolverKind::pdhg));
+    if (planned.curve.motion != Motion::none) ++warm;
+  }
+  CHECK(warm == 2);
 }
