@@ -16,6 +16,7 @@ Board with_curve(const Board& board, const Curve& curve) {
   settings.constraint = curve.constraint;
   settings.op = curve.op;
   settings.warm_start = curve.motion != Motion::none;
+  settings.threads = curve.threads;
   // Both were chosen for the board's own solver and basis; rho means the same where solver and metric are the same.
   settings.lambda = std::nullopt;
   if (curve.solver != board.reconstruction.solver ||
@@ -36,7 +37,7 @@ hal::Result<CurveEyes> set_up_curve(const Board& board, const LivingResponse& li
   const bool shares = curve.solver != recon::SolverKind::tikhonov;
   for (const NoiseLevel& level : levels) {
     if (eyes.by_level.empty() || !shares) {
-      EyeRequest request{std::nullopt, std::nullopt, level.sigma, {}, curve.precision};
+      EyeRequest request{std::nullopt, std::nullopt, level.sigma, std::nullopt, {}, curve.precision};
       if (shares) request.cache = board.folder / ".cache";
       auto eye = ReadyEye::make(curved, living, request, progress);
       if (!eye) return tl::unexpected(std::move(eye.error()));

@@ -78,7 +78,7 @@ std::string head_of(const Sweep& s, std::size_t level) {
   const std::string second =
       fmt::format("{} scenes ({}), noise {} white pixels = {:g} x the board's", evaluation_scenes,
                   fmt::join(s.scenes, ", "), significant(s.levels[level].sigma, 3), s.levels[level].times);
-  const std::string third = fmt::format("one core of {}", s.machine.cpu);
+  const std::string third = fmt::format("{}, one core where no threads are named", s.machine.cpu);
   return fmt::format("set title {}.\"\\n\".{}.\"\\n\".{} noenhanced\n", quoted(first), quoted(second), quoted(third)) +
          "set logscale xy\n" + axes_of(s, level) +
          "set xlabel 'median time of a frame (ms)'\n"

@@ -10,7 +10,8 @@ namespace compueye::firmware {
 namespace {
 
 constexpr const char* header =
-    "board,solver,basis,constraint,operator,precision,warm_motion,iterations,times_board_noise,sigma,lambda,nmse_mean,"
+    "board,solver,basis,constraint,operator,precision,warm_motion,threads,iterations,times_board_noise,sigma,lambda,"
+    "nmse_mean,"
     "nmse_p90,"
     "psnr_db_mean,psnr_db_p10,ssim_mean,ssim_p10,median_ms,p999_ms,timed_frames,table_bytes,workspace_bytes,"
     "efficient\r\n";
@@ -22,9 +23,10 @@ std::string quality_cells(const QualitySummary& q) {
 
 /// One name of an operator has a comma in it.
 std::string point_cells(const Sweep& s, const MeasuredPoint& p) {
-  return fmt::format("{},{},{},{},\"{}\",{},{},{}", s.board, recon::name(p.curve.solver), recon::name(p.curve.basis),
+  return fmt::format("{},{},{},{},\"{}\",{},{},{},{}", s.board, recon::name(p.curve.solver), recon::name(p.curve.basis),
                      recon::name(p.curve.constraint), recon::name(p.op),
-                     p.curve.precision == recon::Precision::f64 ? "f64" : "f32", name(p.curve.motion), p.iterations);
+                     p.curve.precision == recon::Precision::f64 ? "f64" : "f32", name(p.curve.motion), p.curve.threads,
+                     p.iterations);
 }
 
 std::string cost_cells(const MeasuredPoint& p, bool efficient) {
@@ -37,7 +39,7 @@ std::string cost_cells(const MeasuredPoint& p, bool efficient) {
 std::string sweep_csv(const Sweep& s) {
   std::string text = header;
   for (std::size_t level = 0; level < s.conventional.size(); ++level) {
-    text += fmt::format("{},conventional eye,,,,,,,{},{},,{},,,,,,\r\n", s.board, s.levels[level].times,
+    text += fmt::format("{},conventional eye,,,,,,,,{},{},,{},,,,,,\r\n", s.board, s.levels[level].times,
                         s.levels[level].sigma, quality_cells(s.conventional[level]));
   }
   std::vector<std::vector<std::size_t>> efficient;

@@ -32,6 +32,7 @@ Json point_json(const MeasuredPoint& point) {
             {"precision", name_of(point.curve.precision)},
             {"operator", recon::name(point.op)},
             {"operator_asked", point.curve.op ? Json(recon::name(*point.curve.op)) : Json()},
+            {"threads", point.curve.threads},
             {"warm_start", point.curve.motion != Motion::none},
             {"motion", name(point.curve.motion)},
             {"iterations", point.iterations},
@@ -96,6 +97,7 @@ MeasuredPoint point_from(const Json& json) {
                  json.at("precision") == "f64" ? recon::Precision::f64 : recon::Precision::f32};
   point.op = operator_from(json.at("operator"));
   if (const Json& asked = json.at("operator_asked"); !asked.is_null()) point.curve.op = operator_from(asked);
+  point.curve.threads = json.at("threads").get<int>();
   point.curve.motion = motion_from(json.at("motion").get<std::string>());
   point.iterations = json.at("iterations").get<int>();
   point.median_ms = json.at("median_ms").get<double>();
@@ -160,7 +162,6 @@ Json sweep_json(const Sweep& sweep) {
             {"scenes", sweep.scenes},
             {"first_scene_seed", first_evaluation_seed},
             {"pictures_a_level", evaluation_scenes},
-            {"threads", 1},
             {"processor_share", sweep.processor_share},
             {"complete", sweep.cut_short.empty()},
             {"cut_short", sweep.cut_short},

@@ -8,10 +8,12 @@
 #include <span>
 #include <string_view>
 
+#include "firmware/app/pareto/machine.hpp"
 #include "firmware/app/report/nearest_name.hpp"
 #include "firmware/app/report/number_text.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
+#include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -33,6 +35,7 @@ struct SweepRow {
   std::vector<int> quick;
   std::optional<OperatorKind> op = std::nullopt;  ///< absent: the board's, or the quickest
   Motion motion = Motion::none;                   ///< of a warm start
+  bool all_cores = false;                         ///< a thread a core; left out where there is but one
 };
 
 /// What is swept. To sweep more, add a line.
@@ -59,6 +62,7 @@ const std::vector<SweepRow>& sweep_rows() {
       {SolverKind::pdhg, Precision::f32, true, every_eye, some, few, OperatorKind::dense_runs_bf16},
       {SolverKind::pdhg, Precision::f32, true, every_eye, some, few, OperatorKind::dense_runs},
       {SolverKind::pdhg, Precision::f32, true, every_eye, some, few, OperatorKind::csr},
+      {SolverKind::pdhg, Precision::f32, true, every_eye, some, few, {}, Motion::none, true},
       {SolverKind::admm, Precision::f64, true, large, factored, few},
   };
   return rows;
@@ -110,9 +114,11 @@ void add_row(const SweepRow& row, const Board& board, const ParetoOptions& optio
   for (const BasisKind basis : bases_of(row, board, options)) {
     for (const auto constraint : {board.reconstruction.constraint, recon::ConstraintKind::none}) {
       if (!recon::supports(row.solver, basis, constraint)) continue;
-      const Curve curve{row.solver, basis, constraint, row.precision, row.op ? row.op : board.reconstruction.op,
-                        row.motion};
-      // A board that names a form of A has it in two lines of the table.
+      Curve curve{row.solver, basis, constraint, row.precision};
+      curve.op = row.op ? row.op : board.reconstruction.op;
+      curve.motion = row.motion;
+      if (row.all_cores) curve.threads = std::min(this_machine().cores, recon::WorkerThreads::most);
+      // A board that names a form of A has it in two lines of the table, a machine with one core its threads.
       const bool there = std::any_of(plan.curves.begin(), plan.curves.end(),
                                      [&](const PlannedCurve& other) { return other.curve == curve; });
       if (!there) plan.curves.push_back({curve, iterations_of(row, basis, board, options.quick)});
@@ -131,6 +137,7 @@ std::string title(const Curve& curve) {
   }
   if (curve.precision == Precision::f64) text += " f64";
   if (curve.op) text += ", " + std::string(recon::name(*curve.op));
+  if (curve.threads > 1) text += fmt::format(", {} threads", curve.threads);
   return curve.motion == Motion::none ? text : text + ", warm, " + std::string(name(curve.motion));
 }
 

@@ -20,11 +20,13 @@ struct Curve {
   recon::Precision precision = recon::Precision::f32;
   std::optional<recon::OperatorKind> op = std::nullopt;  ///< absent: the quickest form of A
   Motion motion = Motion::none;  ///< of the frames that a warm start goes on from; none: every frame starts cold
+  int threads = 1;
 
   bool operator==(const Curve&) const = default;
 };
 
-/// "admm dct", "admm dct f64", "pdhg dct, dense runs in int8", "pdhg dct, warm, still": what a legend says.
+/// "admm dct", "admm dct f64", "pdhg dct, dense runs in int8", "pdhg dct, warm, still", "pdhg dct, 2 threads":
+/// what a legend says.
 [[nodiscard]] std::string title(const Curve& curve);
 
 /// A curve and how far it is followed.

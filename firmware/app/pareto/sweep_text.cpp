@@ -13,7 +13,7 @@ namespace {
 
 std::string head_text(const Sweep& s) {
   return fmt::format(
-      "{}: {} of {} ommatidia see its {} x {} pixels; {} cores of {}, one in use\n"
+      "{}: {} of {} ommatidia see its {} x {} pixels; {} cores of {}, one in use where no threads are named\n"
       "{} scenes ({}, seeds from {}) at {} noise levels, through the simulated eye; lambda by rule from sigma\n",
       s.board, grouped(s.seeing), grouped(s.channels), s.image_rows, s.image_cols, s.machine.cores, s.machine.cpu,
       evaluation_scenes, fmt::join(s.scenes, ", "), first_evaluation_seed, s.levels.size());

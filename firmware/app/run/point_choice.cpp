@@ -39,6 +39,12 @@ std::uint64_t memory_of(const Sweep& sweep, const std::vector<std::size_t>& ladd
   return total;
 }
 
+/// A frame does not say how many threads it took or how it started.
+bool frames_look_alike(const MeasuredPoint& a, const MeasuredPoint& b) {
+  return a.curve.solver == b.curve.solver && a.curve.basis == b.curve.basis && a.curve.precision == b.curve.precision &&
+         a.op == b.op && a.iterations == b.iterations;
+}
+
 }  // namespace
 
 PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, double period_ms) {
@@ -66,6 +72,10 @@ PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, 
   const std::uint64_t alone = memory_of(sweep, choice.ladder);
   for (std::size_t f = chosen; f-- > 0 && choice.ladder.size() < most_rungs;) {
     if (points[front[f]].cost * rung_speed_up > points[choice.ladder.back()].cost) continue;
+    const bool told_apart = std::none_of(choice.ladder.begin(), choice.ladder.end(), [&](std::size_t other) {
+      return frames_look_alike(sweep.points[front[f]], sweep.points[other]);
+    });
+    if (!told_apart) continue;
     std::vector<std::size_t> longer = choice.ladder;
     longer.push_back(front[f]);
     if (memory_of(sweep, longer) <= alone + most_ladder_bytes) choice.ladder = std::move(longer);

@@ -88,3 +88,16 @@ TEST_CASE("the sentence names the point, why it, and what comes after it") {
     CHECK(text.find(part) != std::string::npos);
   }
 }
+
+TEST_CASE("no rung whose frames cannot be told from those of another") {
+  Sweep sweep = some_sweep({{10, 1, 0.2}, {10, 4, 0.1}});
+  sweep.points[0].curve.threads = 2;
+  CHECK(choose_points(sweep, 0.3, 1000.0, period_ms).ladder == std::vector<std::size_t>{1});
+}
+
+TEST_CASE("a warm start counts with what it made of a scene in which something moves") {
+  Sweep sweep = some_sweep({{5, 1, 0.2}, {5, 1.1, 0.01}, {5, 1.2, 0.1}});
+  sweep.points[1].curve.motion = Motion::still;
+  sweep.points[2].curve.motion = Motion::sprite;
+  CHECK(choose_points(sweep, 0.3, 1000.0, period_ms).ladder.front() == 2);
+}

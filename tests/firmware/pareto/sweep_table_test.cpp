@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "firmware/app/pareto/curve_eyes.hpp"
+#include "firmware/app/pareto/machine.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
 
@@ -106,4 +107,15 @@ TEST_CASE("what can go on from the last frame does so with and without motion, e
     if (planned.curve.motion != Motion::none) ++warm;
   }
   CHECK(warm == 2);
+}
+
+TEST_CASE("a thread a core is one curve of its own, on a machine that has cores to share") {
+  int shared = 0;
+  for (const PlannedCurve& planned : plan_of({}).curves) {
+    CHECK(with_curve(some_board(), planned.curve).reconstruction.threads == planned.curve.threads);
+    if (planned.curve.threads == 1) continue;
+    ++shared;
+    CHECK(title(planned.curve).find("threads") != std::string::npos);
+  }
+  CHECK(shared == (this_machine().cores > 1 ? 1 : 0));
 }
