@@ -236,7 +236,8 @@ std::vector<std::size_t> efficient_points(const Sweep& sweep, std::size_t level)
   std::vector<CostAndError> points;
   for (const MeasuredPoint& point : sweep.points) {
     const QualitySummary& quality = level < point.levels.size() ? point.levels[level].quality : point.overall;
-    points.push_back({point.median_ms, quality.mean.nmse});
+    const bool counts = point.curve.motion != Motion::still;
+    points.push_back({point.median_ms, counts ? quality.mean.nmse : std::numeric_limits<double>::quiet_NaN()});
   }
   return efficient_front(points, least_gain);
 }

@@ -40,6 +40,7 @@ struct Sweep {
 
 /// The points that no other outdoes in median time and, by more than a hundredth, in mean NMSE at `level`
 /// (sweep.levels.size(): overall), by time.
+/// A warm start on a still scene is none of them: it is the best that can happen, not what can be counted on.
 [[nodiscard]] std::vector<std::size_t> efficient_points(const Sweep& sweep, std::size_t level);
 
 }  // namespace compueye::firmware

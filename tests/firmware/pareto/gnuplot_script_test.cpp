@@ -35,6 +35,13 @@ TEST_CASE("curves with efficient points come first, then the nearest; the first 
   for (const PlotCurve& curve : curves) CHECK(curve.named);
 }
 
+TEST_CASE("a warm start on a still scene is drawn, but not efficient") {
+  Sweep sweep = some_sweep({{2, 1, 0.5}, {4, 0.5, 0.01}, {8, 2, 0.2}});
+  sweep.points[1].curve.motion = Motion::still;
+  CHECK(efficient_points(sweep, 0) == std::vector<std::size_t>{0, 2});
+  CHECK(plot_curves(sweep, 0).size() == 2);
+}
+
 TEST_CASE("the script has axes with units, a legend, the conventional eye and both pictures") {
   Sweep sweep = some_sweep({{2, 1, 0.5}, {4, 2, 0.0}});
   sweep.board = "it's";
