@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -13,8 +14,6 @@
 #include "firmware/app/pareto/gnuplot_script.hpp"
 #include "firmware/app/report/number_text.hpp"
 #include "firmware/files/atomic_file.hpp"
-
-extern char** environ;
 
 namespace compueye::firmware {
 namespace {
