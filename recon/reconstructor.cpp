@@ -247,6 +247,10 @@ std::size_t Reconstructor::table_bytes() const noexcept {
   return owned + tables_->factor.values.size() * sizeof(float) + tables_->seeing.size() * sizeof(std::int32_t);
 }
 
+void Reconstructor::forget_modes() noexcept {
+  if (tables_->factor.rank > 0) std::vector<float>().swap(tables_->factor.values);
+}
+
 void Reconstructor::forget_last_frame(std::span<std::byte> workspace) const noexcept {
   if (plan().warm_start && workspace.size() >= required_bytes()) core::WarmStart<float>::forget(workspace.data());
 }

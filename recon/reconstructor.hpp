@@ -114,6 +114,10 @@ class Reconstructor {
   /// The next frame in this workspace starts cold, whatever the plan says. `workspace` as for solve().
   void forget_last_frame(std::span<std::byte> workspace) const noexcept;
 
+  /// Gives back the memory of modes that were only kept to be stored: factor() has no values afterwards. Not while a
+  /// solve() runs; does nothing to an inverse, which every frame needs.
+  void forget_modes() noexcept;
+
   /// The factor, to be stored; without values where the plan needs none.
   [[nodiscard]] const Factor& factor() const noexcept;
 

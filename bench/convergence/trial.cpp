@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "bench/timing.hpp"
+#include "recon/lambda_rule.hpp"
 #include "sim/built_in_scenes.hpp"
 #include "sim/random.hpp"
 
@@ -96,6 +99,43 @@ int Curve::mean_within(double share) const {
     if (inside && first == 0) first = r.iterations;
   }
   return first;
+}
+
+hal::Result<std::vector<recon::Reconstructor>> make_solvers(const recon::Response& response, const Eye& eye,
+                                                            recon::Objective objective, const recon::Plan& plan,
+                                                            const std::vector<Sample>& samples) {
+  std::vector<recon::Reconstructor> solvers;
+  std::optional<recon::Factor> factor;
+  const bool same =
+      std::all_of(samples.begin(), samples.end(), [&](const Sample& s) { return s.sigma == samples.front().sigma; });
+  for (const Sample& sample : samples) {
+    const auto lambda = recon::lambda_by_rule(response, eye.plane.rows, eye.plane.cols, recon::SolverKind::admm,
+                                              objective.basis, sample.sigma);
+    if (!lambda) return tl::unexpected(lambda.error());
+    objective.lambda = *lambda;
+    auto made = recon::Reconstructor::create(response, eye.plane.rows, eye.plane.cols, objective, plan, factor);
+    if (!made) return tl::unexpected(made.error());
+    if (recon::uses_factor(plan.solver)) factor = made->factor();
+    solvers.push_back(std::move(*made));
+    if (same) break;
+  }
+  return solvers;
+}
+
+std::vector<Reached> measure_at(std::vector<recon::Reconstructor>& solvers, const std::vector<Sample>& samples,
+                                const std::vector<int>& iterations) {
+  std::vector<Reached> reached;
+  for (const int k : iterations) {
+    const Outcomes outcomes = solve_all(solvers, samples, k);
+    reached.push_back(summary(k, outcomes, outcomes));
+  }
+  return reached;
+}
+
+double frame_ms(const recon::Reconstructor& solver, const Sample& sample) {
+  const Workspace memory(solver.required_bytes());
+  std::vector<float> x(sample.truth.size());
+  return median_ms([&] { static_cast<void>(solver.solve(sample.y, {}, memory.span(), x)); });
 }
 
 Curve measure_curve(std::vector<recon::Reconstructor>& solvers, const std::vector<Sample>& samples, int most) {

@@ -47,6 +47,19 @@ struct Curve {
   [[nodiscard]] int mean_within(double share) const;
 };
 
+/// A solver for every scene with a sigma of its own, or one for all; lambda by rule. They share one factor.
+[[nodiscard]] hal::Result<std::vector<recon::Reconstructor>> make_solvers(const recon::Response& response,
+                                                                          const Eye& eye, recon::Objective objective,
+                                                                          const recon::Plan& plan,
+                                                                          const std::vector<Sample>& samples);
+
+/// Means over all scenes at these iterations; excess is left nought.
+[[nodiscard]] std::vector<Reached> measure_at(std::vector<recon::Reconstructor>& solvers,
+                                              const std::vector<Sample>& samples, const std::vector<int>& iterations);
+
+/// Median time of one frame with the iterations that the solver has.
+[[nodiscard]] double frame_ms(const recon::Reconstructor& solver, const Sample& sample);
+
 /// Iterations 1 to `most`, denser at the beginning, and ten times `most` as converged.
 [[nodiscard]] Curve measure_curve(std::vector<recon::Reconstructor>& solvers, const std::vector<Sample>& samples,
                                   int most);

@@ -54,6 +54,8 @@ class ReadyEye {
   [[nodiscard]] FactorOrigin factor_origin() const noexcept { return factor_origin_; }
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
+  /// Gives back memory that frames do not need, see Reconstructor::forget_modes().
+  void forget_modes() noexcept { reconstructor_->forget_modes(); }
   /// Another number of iterations a frame.
   [[nodiscard]] hal::Result<void> set_iterations(int iterations) { return reconstructor_->set_iterations(iterations); }
 

@@ -149,8 +149,9 @@ Result<void> RunSession::make_eye() {
     progress.finish();
   }
   for (const std::string& sentence : choice_notes_) note(sentence);
-  for (const ReadyEye& one : ladder_.eyes) {
+  for (ReadyEye& one : ladder_.eyes) {
     for (const std::string& sentence : one.notes()) note(sentence);
+    one.forget_modes();
   }
   report_.setup_s = static_cast<double>(clock_.now_ns() - begin_ns) / 1e9;
   return {};
