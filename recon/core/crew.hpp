@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "recon/core/multiversion.hpp"
+
 namespace compueye::recon::core {
 
 /// Who does the frame path's work: by default whoever calls, or several workers that somebody else keeps (recon's
@@ -24,9 +26,14 @@ struct Crew {
   /// call.
   template <class Work>
   void share(std::size_t parts, std::size_t size, const Work& work) const noexcept {
+#if defined(COMPUEYE_CORTEX_M)
+    static_cast<void>(size);
+    return work(std::size_t{0}, std::size_t{0}, parts);  // nobody else is there, and no call goes through a pointer
+#else
     if (workers < 2 || size < least_worth) return work(std::size_t{0}, std::size_t{0}, parts);
     Shared<Work> shared{&work, parts, workers};
     run(context, &Shared<Work>::part, &shared);
+#endif
   }
 
  private:

@@ -66,27 +66,14 @@ COMPUEYE_INLINE void store_four(const Four<T>& v, T* to) {
 template <class T>
 COMPUEYE_INLINE Four<T> load_towards(const T* at, bool backward) {
   if (!backward) return load_four(at);
-  const Four<T> v = load_four(at - 3);
-  return __builtin_shufflevector(v, v, 3, 2, 1, 0);
+  return reversed<T>(load_four(at - 3));
 }
 
 template <class T>
 COMPUEYE_INLINE void add_towards(const Four<T>& v, T* at, bool backward) {
   T* to = backward ? at - 3 : at;
-  const Four<T> ordered = backward ? __builtin_shufflevector(v, v, 3, 2, 1, 0) : v;
+  const Four<T> ordered = backward ? reversed<T>(v) : v;
   store_four<T>(load_four(to) + ordered, to);
-}
-
-template <class T>
-COMPUEYE_INLINE void transpose(Four<T> (&v)[4]) {
-  const Four<T> a = __builtin_shufflevector(v[0], v[1], 0, 4, 1, 5),
-                b = __builtin_shufflevector(v[2], v[3], 0, 4, 1, 5);
-  const Four<T> c = __builtin_shufflevector(v[0], v[1], 2, 6, 3, 7),
-                d = __builtin_shufflevector(v[2], v[3], 2, 6, 3, 7);
-  v[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
-  v[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
-  v[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
-  v[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
 }
 
 /// sums[stride * c] = x summed from the centre line outward, for every c of one row of the picture.

@@ -35,6 +35,20 @@ COMPUEYE_INLINE Lanes<T, lane_count> flipped(const Lanes<T, lane_count>& v) {
   for (std::size_t l = 0; l < lane_count; ++l) out[l] = v[l ^ flip];
   return out;
 }
+
+template <class T>
+COMPUEYE_INLINE Four<T> reversed(const Four<T>& v) {
+  return {{v[3], v[2], v[1], v[0]}};
+}
+
+template <class T>
+COMPUEYE_INLINE void transpose(Four<T> (&v)[4]) {
+  const Four<T> a = v[0], b = v[1], c = v[2], d = v[3];
+  v[0] = {{a[0], b[0], c[0], d[0]}};
+  v[1] = {{a[1], b[1], c[1], d[1]}};
+  v[2] = {{a[2], b[2], c[2], d[2]}};
+  v[3] = {{a[3], b[3], c[3], d[3]}};
+}
 #else
 template <class T, std::size_t lane_count>
 struct LaneVector;
@@ -78,6 +92,23 @@ COMPUEYE_INLINE Lanes<T, lane_count> flipped(Lanes<T, lane_count> v) {
   for (std::size_t l = 0; l < lane_count; l += 4) flip_four<flip>(lanes + l);
   __builtin_memcpy(&v, lanes, sizeof(v));
   return v;
+}
+
+template <class T>
+COMPUEYE_INLINE Four<T> reversed(Four<T> v) {
+  return __builtin_shufflevector(v, v, 3, 2, 1, 0);
+}
+
+template <class T>
+COMPUEYE_INLINE void transpose(Four<T> (&v)[4]) {
+  const Four<T> a = __builtin_shufflevector(v[0], v[1], 0, 4, 1, 5),
+                b = __builtin_shufflevector(v[2], v[3], 0, 4, 1, 5);
+  const Four<T> c = __builtin_shufflevector(v[0], v[1], 2, 6, 3, 7),
+                d = __builtin_shufflevector(v[2], v[3], 2, 6, 3, 7);
+  v[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
+  v[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+  v[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
+  v[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
 }
 #endif
 

@@ -11,6 +11,14 @@
 
 #define COMPUEYE_INLINE inline __attribute__((always_inline))
 
+/// A part of a multiversion function: inlined into each clone; a function of its own, with a frame of its own, where
+/// there are none and stack is dear.
+#if defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'M'
+#define COMPUEYE_STAGE __attribute__((noinline))
+#else
+#define COMPUEYE_STAGE COMPUEYE_INLINE
+#endif
+
 // What few registers and little stack ask for; it changes no bit.
 #if defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'M'
 #define COMPUEYE_CORTEX_M

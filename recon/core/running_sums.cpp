@@ -8,7 +8,7 @@ namespace compueye::recon::core {
 namespace {
 
 template <std::size_t lane_count, class T>
-COMPUEYE_INLINE void sum_outward(const RunningSums<T>& a, const T* x, T* sums, std::size_t begin, std::size_t end) {
+COMPUEYE_STAGE void sum_outward(const RunningSums<T>& a, const T* x, T* sums, std::size_t begin, std::size_t end) {
   const Fold fold(a.image_rows, a.image_cols);
   const std::size_t apart = lane_count * a.half_cols();
   for (std::size_t r = begin; r < end; ++r) {
@@ -24,7 +24,7 @@ COMPUEYE_INLINE void sum_outward(const RunningSums<T>& a, const T* x, T* sums, s
 }
 
 template <std::size_t lane_count, class T>
-COMPUEYE_INLINE void sum_inward(const RunningSums<T>& a, const T* sums, T* x, std::size_t begin, std::size_t end) {
+COMPUEYE_STAGE void sum_inward(const RunningSums<T>& a, const T* sums, T* x, std::size_t begin, std::size_t end) {
   const Fold fold(a.image_rows, a.image_cols);
   for (std::size_t r = begin; r < end; ++r) {
     sum_row_inward<lane_count>(fold, static_cast<std::ptrdiff_t>(r), sums + lane_count * r * a.half_cols(), x);
@@ -32,8 +32,8 @@ COMPUEYE_INLINE void sum_inward(const RunningSums<T>& a, const T* sums, T* x, st
 }
 
 template <class T>
-COMPUEYE_INLINE void sum_inward_transposed(const RunningSums<T>& a, const T* sums, T* x, std::size_t begin,
-                                           std::size_t end) {
+COMPUEYE_STAGE void sum_inward_transposed(const RunningSums<T>& a, const T* sums, T* x, std::size_t begin,
+                                          std::size_t end) {
   const Fold fold(a.image_rows, a.image_cols);
   const std::size_t apart = 8 * a.half_cols();
   std::size_t r = begin;
@@ -45,6 +45,34 @@ COMPUEYE_INLINE void sum_inward_transposed(const RunningSums<T>& a, const T* sum
 
 /// Sum of difference times running sum over taps begin .. end-1. Four partial sums, so that one addition need not wait
 /// for the one before.
+#if defined(COMPUEYE_PLAIN_LANES)
+// Four lanes after the other four: the partial sums of eight are more than there are registers.
+template <std::size_t lane_count, class T>
+COMPUEYE_STAGE Four<T> taps_of_four(const RunningSums<T>& a, const T* sums, std::size_t begin, std::size_t end) {
+  Four<T> part[4] = {};
+  const auto add = [&](std::size_t p, std::size_t k) __attribute__((always_inline)) {
+    part[p] += a.difference[k] * load_four(sums + lane_count * a.element[k]);
+  };
+  std::size_t k = begin;
+  for (; k + 4 <= end; k += 4) {
+    for (std::size_t p = 0; p < 4; ++p) add(p, k + p);
+  }
+  if (k < end) add(0, k);
+  if (k + 1 < end) add(1, k + 1);
+  if (k + 2 < end) add(2, k + 2);
+  return (part[0] + part[1]) + (part[2] + part[3]);
+}
+
+template <std::size_t lane_count, class T>
+COMPUEYE_INLINE Lanes<T, lane_count> taps_of(const RunningSums<T>& a, const Lanes<T, lane_count>* sums,
+                                             std::size_t begin, std::size_t end) {
+  Lanes<T, lane_count> out;
+  for (std::size_t l = 0; l < lane_count; l += 4) {
+    store_four<T>(taps_of_four<lane_count>(a, sums->lane + l, begin, end), out.lane + l);
+  }
+  return out;
+}
+#else
 template <std::size_t lane_count, class T>
 COMPUEYE_INLINE Lanes<T, lane_count> taps_of(const RunningSums<T>& a, const Lanes<T, lane_count>* sums,
                                              std::size_t begin, std::size_t end) {
@@ -59,10 +87,11 @@ COMPUEYE_INLINE Lanes<T, lane_count> taps_of(const RunningSums<T>& a, const Lane
   if (k + 2 < end) part[2] += a.difference[k + 2] * sums[a.element[k + 2]];
   return (part[0] + part[1]) + (part[2] + part[3]);
 }
+#endif
 
 template <std::size_t lane_count, class T>
-COMPUEYE_INLINE void forward_symmetric(const RunningSums<T>& a, const T* scratch, T* y, std::size_t begin,
-                                       std::size_t end) {
+COMPUEYE_STAGE void forward_symmetric(const RunningSums<T>& a, const T* scratch, T* y, std::size_t begin,
+                                      std::size_t end) {
   const auto* sums = reinterpret_cast<const Lanes<T, lane_count>*>(scratch);
   for (std::size_t t = begin; t < end; ++t) {
     const auto first = [&](std::size_t q) { return a.first[(4 * t + q) * a.bands]; };
@@ -79,8 +108,8 @@ COMPUEYE_INLINE void forward_symmetric(const RunningSums<T>& a, const T* scratch
 
 /// Taps of bands begin .. end-1.
 template <std::size_t lane_count, class T>
-COMPUEYE_INLINE void adjoint_symmetric(const RunningSums<T>& a, const T* y, T* scratch, std::size_t begin,
-                                       std::size_t end) {
+COMPUEYE_STAGE void adjoint_symmetric(const RunningSums<T>& a, const T* y, T* scratch, std::size_t begin,
+                                      std::size_t end) {
   auto* sums = reinterpret_cast<Lanes<T, lane_count>*>(scratch);
   for (std::size_t t = 0; t < a.tables; ++t) {
     const std::int32_t* row = a.row + lane_count * t;
@@ -111,7 +140,7 @@ COMPUEYE_INLINE T taps_of_one(const RunningSums<T>& a, const T* sums, std::size_
 }
 
 template <class T>
-COMPUEYE_INLINE void forward_each(const RunningSums<T>& a, const T* sums, T* y, std::size_t begin, std::size_t end) {
+COMPUEYE_STAGE void forward_each(const RunningSums<T>& a, const T* sums, T* y, std::size_t begin, std::size_t end) {
   for (std::size_t t = begin; t < end; ++t) {
     T sum = T(0);
     for (std::size_t q = 0; q < 4; ++q) {
@@ -122,7 +151,7 @@ COMPUEYE_INLINE void forward_each(const RunningSums<T>& a, const T* sums, T* y, 
 }
 
 template <class T>
-COMPUEYE_INLINE void adjoint_each(const RunningSums<T>& a, const T* y, T* sums, std::size_t begin, std::size_t end) {
+COMPUEYE_STAGE void adjoint_each(const RunningSums<T>& a, const T* y, T* sums, std::size_t begin, std::size_t end) {
   for (std::size_t t = 0; t < a.tables; ++t) {
     for (std::size_t q = 0; q < 4; ++q) {
       const std::uint32_t* first = a.first + (4 * t + q) * a.bands;

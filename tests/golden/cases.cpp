@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "calib/nominal.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 using recon::BasisKind;
 using recon::ConstraintKind;
+using recon::OperatorKind;
 using recon::SolverKind;
 
 constexpr std::uint64_t seed = 1;
@@ -28,12 +30,17 @@ Case make_case(std::string_view name, const bench::Eye& eye, std::string_view sc
   return golden;
 }
 
-Case small_eye(std::string_view name, std::string_view scene, BasisKind basis, bool measured) {
+Case small_eye(std::string_view name, std::string_view scene, BasisKind basis, std::optional<OperatorKind> op) {
   constexpr double lsb = 128.0 / 65535.0;
   Case golden = make_case(name, bench::eye_8x8(), scene, lsb);
   golden.objective.basis = basis;
-  golden.measured = measured;
   golden.plan.iterations = 30;
+  golden.plan.op = op;
+  return golden;
+}
+
+Case measured(Case golden) {
+  golden.measured = true;
   return golden;
 }
 
@@ -68,10 +75,14 @@ hal::Result<recon::Response> response_of(const Case& golden) {
 
 std::vector<Case> golden_cases() {
   return {
-      small_eye("8x8-admm", "fig2", BasisKind::identity, false),
-      small_eye("8x8-measured-admm", "fig2", BasisKind::identity, true),
-      small_eye("8x8-admm-dct", "bars", BasisKind::dct, false),
+      small_eye("8x8-admm", "fig2", BasisKind::identity, {}),
+      measured(small_eye("8x8-measured-admm", "fig2", BasisKind::identity, {})),
+      // Plain rows ask for the least stack: for microcontrollers.
+      small_eye("8x8-sparse-admm", "fig2", BasisKind::identity, OperatorKind::csr),
+      small_eye("8x8-sparse-admm-dct", "bars", BasisKind::dct, OperatorKind::csr),
+      measured(small_eye("8x8-dense-admm", "fig2", BasisKind::identity, OperatorKind::dense)),
       large_eye("80x80-admm", "line-art", BasisKind::dct, SolverKind::admm, 60),
+      large_eye("80x80-pdhg", "line-art", BasisKind::dct, SolverKind::pdhg, 25),
       large_eye("80x80-cp-tv", "phantom", BasisKind::tv, SolverKind::chambolle_pock, 30),
   };
 }
