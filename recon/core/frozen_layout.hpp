@@ -12,7 +12,7 @@ namespace compueye::recon::core {
 // on the way: tests/recon/frozen_frame_test.cpp solves every setting once more from its bytes.
 
 inline constexpr std::uint64_t frozen_magic = 0x4559454E5A4F5246;  // "FROZNEYE"
-inline constexpr std::uint64_t frozen_version = 1;                 // goes up whenever this file changes
+inline constexpr std::uint64_t frozen_version = 2;                 // goes up whenever this file changes
 inline constexpr std::size_t frozen_alignment = 64;
 
 template <class Archive>
@@ -106,6 +106,17 @@ void describe(ClassInverse<float>& inverse, Archive& archive) {
 }
 
 template <class Archive>
+void describe(ThinStep<float>& step, Archive& archive) {
+  archive.number(step.rows);
+  archive.number(step.cols);
+  archive.number(step.lanes);
+  archive.table(step.analysis, step.rows * step.cols);
+  archive.table(step.synthesis, step.rows * step.cols);
+  archive.table(step.pixel, step.lanes == 4 ? step.cols : 0);
+  archive.table(step.image, step.lanes == 4 ? 4 * step.rows : 0);
+}
+
+template <class Archive>
 void describe(Basis<float>& psi, Archive& archive) {
   archive.kind(psi.kind);
   archive.number(psi.rows);
@@ -130,6 +141,7 @@ template <class Archive>
 void describe(FrameProblem<float>& problem, Archive& archive) {
   describe(problem.a, archive);
   describe(problem.inverse, archive);
+  describe(problem.thin_step, archive);
   archive.table(problem.seeing, problem.a.rows);
   archive.number(problem.channels);
   archive.number(problem.max_reweighted);

@@ -1,10 +1,16 @@
 #include "recon/core/thin_step.hpp"
 
 #include "recon/core/multiversion.hpp"
+#if defined(COMPUEYE_CORTEX_M)
+#include "recon/core/thin_step_by_number.hpp"
+#endif
 
 namespace compueye::recon::core {
 namespace {
 
+constexpr std::size_t group = 16;
+
+#if !defined(COMPUEYE_CORTEX_M)
 template <class T>
 struct SixteenLanes;
 template <>
@@ -18,7 +24,6 @@ struct SixteenLanes<double> {
 template <class T>
 using Sixteen = typename SixteenLanes<T>::type;
 
-constexpr std::size_t group = 16;
 constexpr std::size_t block = 4 * group;
 
 template <class T>
@@ -98,6 +103,7 @@ COMPUEYE_INLINE void add_adjoint(const ThinStep<T>& step, const T* residual, T* 
     for (std::size_t b = 0; b < 4; ++b) *reinterpret_cast<Sixteen<T>*>(v + first + b * group) = sum[b];
   }
 }
+#endif
 
 template <class T>
 COMPUEYE_INLINE void apply_of(const ThinStep<T>& step, const T* samples, T* v, T* residual) {
