@@ -127,16 +127,24 @@ firmware::Json json_of(const Measured& m) {
 int main(int argc, char** argv) {
   CLI::App app{"How long a frame takes that is within 5 % of converged\nExample: bench_convergence --only 80x80"};
   std::string only;
+  double rho = 0.0, relaxation = 0.0;
+  int rank = 0;
   bool json = false, baseline = false;
   app.add_option("--only", only, "frames whose name holds this text");
+  app.add_option("--rho", rho, "in place of the rule");
+  app.add_option("--relaxation", relaxation, "in place of 1.7");
+  app.add_option("--rank", rank, "modes in place of the rule");
   app.add_flag("--baseline", baseline, "Eigen and FISTA on the same problem besides, some minutes");
   app.add_flag("--json", json);
   CLI11_PARSE(app, argc, argv);
   const double bandwidth = bench::read_bandwidth();
   std::vector<Measured> all;
   firmware::Json report{{"read_bandwidth_gigabytes_per_second", bandwidth}};
-  for (const bench::FrameCase& c : bench::frame_cases()) {
+  for (bench::FrameCase c : bench::frame_cases()) {
     if (c.name.find(only) == std::string::npos) continue;
+    c.plan.rho = rho;
+    c.plan.rank = rank;
+    if (relaxation > 0.0) c.plan.relaxation = relaxation;
     auto measured = measure(c);
     if (!measured) {
       fmt::print(stderr, "{}: {}\n", c.name, measured.error().text());

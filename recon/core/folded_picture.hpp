@@ -50,18 +50,6 @@ struct FoldedRow {
   }
 };
 
-template <class T>
-COMPUEYE_INLINE Four<T> load_four(const T* from) {
-  Four<T> v;
-  __builtin_memcpy(&v, from, sizeof(v));
-  return v;
-}
-
-template <class T>
-COMPUEYE_INLINE void store_four(const Four<T>& v, T* to) {
-  __builtin_memcpy(to, &v, sizeof(v));
-}
-
 /// Four numbers from `at` on, forward or backward, in that order.
 template <class T>
 COMPUEYE_INLINE Four<T> load_towards(const T* at, bool backward) {

@@ -112,4 +112,16 @@ COMPUEYE_INLINE void transpose(Four<T> (&v)[4]) {
 }
 #endif
 
+template <class T>
+COMPUEYE_INLINE Four<T> load_four(const T* from) {
+  Four<T> v;
+  __builtin_memcpy(&v, from, sizeof(v));
+  return v;
+}
+
+template <class T>
+COMPUEYE_INLINE void store_four(const Four<T>& v, T* to) {
+  __builtin_memcpy(to, &v, sizeof(v));
+}
+
 }  // namespace compueye::recon::core

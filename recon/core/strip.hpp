@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "recon/core/lane_vectors.hpp"
 #include "recon/core/multiversion.hpp"
 #include "recon/core/vector_sums.hpp"
 
@@ -23,6 +24,23 @@ template <class T>
 COMPUEYE_INLINE void strip_product(const T* c, std::size_t row_step, std::size_t sample_step, const T* __restrict in,
                                    T* __restrict out, std::size_t out_stride, std::size_t n) {
   std::size_t k = 0;
+  for (; lanes_at_once == lanes && k + 4 <= n; k += 4) {
+    T sum[4][lanes] = {};
+    const T* row = c + k * row_step;
+    for (std::size_t r = 0; r < n; ++r, row += sample_step) {
+      const T c0 = row[0], c1 = row[row_step], c2 = row[2 * row_step], c3 = row[3 * row_step];
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const T x = in[r * lanes + l];
+        sum[0][l] += c0 * x;
+        sum[1][l] += c1 * x;
+        sum[2][l] += c2 * x;
+        sum[3][l] += c3 * x;
+      }
+    }
+    for (std::size_t o = 0; o < 4; ++o) {
+      for (std::size_t l = 0; l < lanes; ++l) out[(k + o) * out_stride * lanes + l] = sum[o][l];
+    }
+  }
   for (; k + 2 <= n; k += 2) {
     for (std::size_t begin = 0; begin < lanes; begin += lanes_at_once) {
       T first[lanes_at_once] = {}, second[lanes_at_once] = {};
@@ -54,6 +72,40 @@ COMPUEYE_INLINE void strip_product(const T* c, std::size_t row_step, std::size_t
   return (count + lanes - 1) / lanes;
 }
 
+/// The 16 picture rows from `rows` on as columns of a strip, or back; four by four, so that both sides are whole
+/// vectors.
+template <class T>
+COMPUEYE_INLINE void rows_to_strip(const T* __restrict rows, std::size_t pitch, std::size_t cols, T* __restrict strip) {
+  std::size_t c = 0;
+  for (; c + 4 <= cols; c += 4) {
+    for (std::size_t l = 0; l < lanes; l += 4) {
+      Four<T> block[4];
+      for (std::size_t k = 0; k < 4; ++k) block[k] = load_four(rows + (l + k) * pitch + c);
+      transpose<T>(block);
+      for (std::size_t k = 0; k < 4; ++k) store_four<T>(block[k], strip + (c + k) * lanes + l);
+    }
+  }
+  for (; c < cols; ++c) {
+    for (std::size_t l = 0; l < lanes; ++l) strip[c * lanes + l] = rows[l * pitch + c];
+  }
+}
+
+template <class T>
+COMPUEYE_INLINE void strip_to_rows(const T* __restrict strip, std::size_t pitch, std::size_t cols, T* __restrict rows) {
+  std::size_t c = 0;
+  for (; c + 4 <= cols; c += 4) {
+    for (std::size_t l = 0; l < lanes; l += 4) {
+      Four<T> block[4];
+      for (std::size_t k = 0; k < 4; ++k) block[k] = load_four(strip + (c + k) * lanes + l);
+      transpose<T>(block);
+      for (std::size_t k = 0; k < 4; ++k) store_four<T>(block[k], rows + (l + k) * pitch + c);
+    }
+  }
+  for (; c < cols; ++c) {
+    for (std::size_t l = 0; l < lanes; ++l) rows[l * pitch + c] = strip[c * lanes + l];
+  }
+}
+
 /// Runs `transform(strip, result, work)` down every column of the upper left rows x cols part of a picture whose rows
 /// are `pitch` apart, in strips begin .. end-1 of strips_of(cols). `scratch` holds three strips of `rows` rows.
 template <class T, class Transform>
@@ -63,11 +115,23 @@ COMPUEYE_INLINE void along_columns(std::size_t rows, std::size_t cols, std::size
   for (std::size_t s = begin; s < end; ++s) {
     const std::size_t first = s * lanes;
     const std::size_t width = cols - first < lanes ? cols - first : lanes;
-    for (std::size_t r = 0; r < rows; ++r) {
-      for (std::size_t l = 0; l < width; ++l) strip[r * lanes + l] = in[r * pitch + first + l];
-      for (std::size_t l = width; l < lanes; ++l) strip[r * lanes + l] = T(0);
+    if (width == lanes) {
+      for (std::size_t r = 0; r < rows; ++r) {
+        for (std::size_t l = 0; l < lanes; ++l) strip[r * lanes + l] = in[r * pitch + first + l];
+      }
+    } else {
+      for (std::size_t r = 0; r < rows; ++r) {
+        for (std::size_t l = 0; l < width; ++l) strip[r * lanes + l] = in[r * pitch + first + l];
+        for (std::size_t l = width; l < lanes; ++l) strip[r * lanes + l] = T(0);
+      }
     }
     transform(strip, result, work);
+    if (width == lanes) {
+      for (std::size_t r = 0; r < rows; ++r) {
+        for (std::size_t l = 0; l < lanes; ++l) out[r * pitch + first + l] = result[r * lanes + l];
+      }
+      continue;
+    }
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t l = 0; l < width; ++l) out[r * pitch + first + l] = result[r * lanes + l];
     }
@@ -82,6 +146,12 @@ COMPUEYE_INLINE void along_rows(std::size_t rows, std::size_t cols, std::size_t 
   for (std::size_t s = begin; s < end; ++s) {
     const std::size_t first = s * lanes;
     const std::size_t height = rows - first < lanes ? rows - first : lanes;
+    if (height == lanes) {
+      rows_to_strip(in + first * pitch, pitch, cols, strip);
+      transform(strip, result, work);
+      strip_to_rows(result, pitch, cols, out + first * pitch);
+      continue;
+    }
     for (std::size_t c = 0; c < cols; ++c) {
       for (std::size_t l = 0; l < height; ++l) strip[c * lanes + l] = in[(first + l) * pitch + c];
       for (std::size_t l = height; l < lanes; ++l) strip[c * lanes + l] = T(0);
