@@ -5,12 +5,13 @@
 namespace compueye::recon {
 namespace {
 
-constexpr int rank_by_rule = 400;
+constexpr int least_by_rule = 400;
+constexpr int rows_a_mode = 12;
 
 }  // namespace
 
 int resolve_rank(const Plan& plan, int order) noexcept {
-  return std::min(order, plan.rank > 0 ? plan.rank : rank_by_rule);
+  return std::min(order, plan.rank > 0 ? plan.rank : std::max(least_by_rule, order / rows_a_mode));
 }
 
 double basis_share(BasisKind basis) noexcept {

@@ -4,9 +4,10 @@
 
 namespace compueye::recon {
 
-/// How many modes of A A' pdhg treats exactly: plan.rank when given, else 400, at most all. On the 80x80 eye (line art,
-/// DCT, sigma^2 = .1) 100, 200, 400 and 800 modes come within 5 % of the converged NMSE in more than 40, 40, 18 and 13
-/// iterations; each 400 cost an eighth of an iteration and .9 MB.
+/// How many modes of A A' pdhg treats exactly: plan.rank when given, else 400 or a twelfth of the rows, at most all. On
+/// the 80x80 eye (line art, DCT, sigma^2 = .1) 100, 200, 400 and 800 modes come within 5 % of the converged NMSE in
+/// more than 40, 40, 18 and 13 iterations; each 400 cost a quarter of an iteration and .9 MB. On the 120x120 eye 400
+/// and 800 take 50 and 29.
 [[nodiscard]] int resolve_rank(const Plan& plan, int order) noexcept;
 
 /// w: the share of the step bound that the basis takes, the modes of A take the rest: .25, and .4 for total variation

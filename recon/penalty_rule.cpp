@@ -14,7 +14,7 @@ namespace {
 
 constexpr double share_of_column_norm = 0.06;
 constexpr double share_for_differences = 0.1;
-constexpr double share_with_few_modes = 0.03;
+constexpr double share_with_few_modes = 0.021;
 
 double squared_norm(const Response& response) {
   const auto values = response.values();

@@ -19,10 +19,10 @@ namespace compueye::recon {
 /// rule gives 20: after 60 iterations at sigma .1 the phantom has half the NMSE of rho 20, at sigma .3 three quarters.
 /// The objective alone would rather have 20 at sigma .3 and 4 at sigma .05. On the 8x8 eyes both rules agree.
 ///
-/// pdhg's rho is the inverse of its primal step: .06 ||A||_F^2 / N in every basis where it knows all modes, else .03,
-/// whose longer steps do more for the modes it does not know. On the 80x80 eye that is 10: at
-/// sigma^2 = .1, 5, 10, 20 and 40 take more than 40, 18, 21 and 31 iterations to 5 % in the DCT; 4, 7, 10, 14 and 28
-/// take 60, 38, 33, 32 and 39 in total variation; at 30 dB 5 to 40 all take 4.
+/// pdhg's rho is the inverse of its primal step: .06 ||A||_F^2 / N in every basis where it knows all modes, else .021,
+/// whose longer steps do more for the modes it does not know. On the 80x80 eye that is 7 (x >= 0, eight scenes): at
+/// sigma^2 = .1, 5, 7 and 10 take 42, 30 and 27 iterations to 5 % of the converged NMSE in the DCT, 50, 40 and 36 in
+/// total variation; at 30 dB, 2, 2 and more than 60.
 ///
 /// All scale as A^2 does, and not with the unit of x. `image_rows * image_cols` must be the number of A's columns.
 [[nodiscard]] double resolve_rho(const Response& response, int image_rows, int image_cols, const Objective& objective,

@@ -51,12 +51,14 @@ std::vector<FrameCase> frame_cases() {
   return {
       small("64/256, 30 dB", false, 6.0, 3.0),
       small("64/256, 30 dB, measured rows", true, 24.0, 12.0),
-      at_paper_noise(make_case("80x80 line art, DCT", large, "line-art", BasisKind::dct, 1e3 / 80, 1e3 / 200)),
-      at_paper_noise(make_case("80x80 phantom, TV", large, "phantom", BasisKind::tv, 1e3 / 60, 1e3 / 150)),
+      at_paper_noise(
+          make_case("80x80 line art, DCT, paper noise", large, "line-art", BasisKind::dct, 1e3 / 80, 1e3 / 200)),
+      at_paper_noise(make_case("80x80 phantom, TV, paper noise", large, "phantom", BasisKind::tv, 1e3 / 60, 1e3 / 150)),
       make_case("80x80 line art, DCT, 30 dB", large, "line-art", BasisKind::dct, 1e3 / 300, 1e3 / 800),
       at_paper_noise(with_measured_rows(make_case("80x80 line art, DCT, measured rows in int8", large, "line-art",
                                                   BasisKind::dct, 1e3 / 15, 1e3 / 40))),
-      at_paper_noise(make_case("120x120 line art, DCT", largest, "line-art", BasisKind::dct, 1e3 / 30, 1e3 / 60)),
+      at_paper_noise(
+          make_case("120x120 line art, DCT, paper noise", largest, "line-art", BasisKind::dct, 1e3 / 30, 1e3 / 60)),
   };
 }
 
