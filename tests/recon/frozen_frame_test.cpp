@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -64,7 +65,7 @@ std::vector<std::byte> frozen(const recon::Reconstructor& solver, const Sample& 
 /// The bytes where a program that thaws them would have put them.
 struct Copy {
   explicit Copy(const std::vector<std::byte>& bytes) : memory(bytes.size()) {
-    std::memcpy(memory.span().data(), bytes.data(), bytes.size());
+    std::copy(bytes.begin(), bytes.end(), memory.span().begin());
   }
   recon::core::Thawed thaw() { return recon::core::thaw(memory.span().data(), memory.span().size(), frame); }
 
