@@ -23,7 +23,7 @@ std::uint64_t WarmStart<T>::mark_of_problem() const noexcept {
     std::memcpy(bytes, &value, sizeof value);
     for (const unsigned char byte : bytes) hash = (hash ^ byte) * 1099511628211ULL;
   };
-  add(problem_);
+  add(reinterpret_cast<std::uintptr_t>(problem_));
   add(problem_->a.rows);
   add(problem_->a.cols);
   add(problem_->psi.kind);
