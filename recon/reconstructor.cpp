@@ -171,7 +171,7 @@ hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& resp
   const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
   if (auto ok = check_scale(squares, response.cols()); !ok) return tl::unexpected(ok.error());
   tables->plan.rho = resolve_rho(response, image_rows, image_cols, objective, plan);
-  tables->factor = wanted_factor(response, image_rows, image_cols, objective, plan);
+  tables->factor = wanted_factor(response, image_rows, image_cols, objective, tables->plan);
   if (plan.solver == SolverKind::pdhg) tables->plan.rank = tables->factor.rank;
   if (auto ok = check_in_precision(squares, objective, tables->plan); !ok) return tl::unexpected(ok.error());
   const int most = static_cast<int>(tables->seeing.size());

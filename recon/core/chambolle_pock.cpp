@@ -61,7 +61,7 @@ class ChambollePock {
     analyse(problem_.psi, ahead_, coefficients_, scratch_);
     problem_.crew.share(coefficient_count_, coefficient_count_, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        const T dual = within_lambda(basis_dual_[k] + problem_.basis_step * coefficients_[k]);
+        const T dual = within(basis_dual_[k] + problem_.basis_step * coefficients_[k], problem_.lambda);
         basis_dual_[k] += relaxation * (dual - basis_dual_[k]);
       }
     });
@@ -98,17 +98,12 @@ class ChambollePock {
                            static_cast<double>(sum_of_magnitudes(coefficients_, coefficient_count_));
     evaluate(samples_, projected_, penalty, residual_, info);
     // Relaxation may have carried them beyond their bounds.
-    for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = within_lambda(basis_dual_[k]);
+    for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = within(basis_dual_[k], problem_.lambda);
     const double gap = gap_.measure(samples_, projected_, basis_dual_, info.objective);
     info.duality_gap = problem_.measure_gap ? gap : -1.0;
     info.primal_residual = moved;
     info.iterations = problem_.point.iterations;
     info.health = health_by_gap(gap, info.objective, moved);
-  }
-
-  [[nodiscard]] T within_lambda(T q) const noexcept {
-    const T above = q > -problem_.lambda ? q : -problem_.lambda;
-    return above < problem_.lambda ? above : problem_.lambda;
   }
 
   const FrameProblem<T>& problem_;

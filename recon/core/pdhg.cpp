@@ -26,7 +26,7 @@ class Pdhg {
         basis_dual_(memory.take<T>(coefficient_count_)),
         gradient_(memory.take<T>(n_)),
         ahead_(memory.take<T>(n_)),
-        coefficients_(memory.take<T>(sparse_basis_ ? coefficient_count_ : 0)),
+        coefficients_(memory.take<T>(coefficient_count_)),
         scratch_(memory.take<T>(sparse_basis_ ? problem.psi.scratch_size() : 0)),
         dual_step_(problem, memory),
         gap_(problem, problem.measure_gap, memory) {
@@ -45,11 +45,7 @@ class Pdhg {
     info.warm = warm_start_.allowed(dual_step_);
     if (!info.warm) start_cold();
     for (int k = 1; k < problem_.point.iterations; ++k) {
-      slope();
-      problem_.crew.share(n_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
-        descend(gradient_ + begin, T(1) / problem_.rho, threshold_, lo_, hi_, problem_.relaxation, x_ + begin,
-                ahead_ + begin, end - begin);
-      });
+      fall();
       rise();
     }
     finish(info);
@@ -65,14 +61,18 @@ class Pdhg {
     for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = T(0);
   }
 
-  /// gradient = A'u + Psi'q
-  void slope() noexcept {
+  /// gradient = A'u + Psi'q, then p in its place
+  void fall() noexcept {
     if (sparse_basis_) {
       synthesise(problem_.psi, basis_dual_, gradient_, scratch_);
     } else {
       for (std::size_t k = 0; k < n_; ++k) gradient_[k] = T(0);
     }
     dual_step_.samples().adjoint_accumulate(row_dual_, gradient_);
+    problem_.crew.share(n_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
+      descend(gradient_ + begin, T(1) / problem_.rho, threshold_, lo_, hi_, problem_.relaxation, x_ + begin,
+              ahead_ + begin, end - begin);
+    });
   }
 
   void rise() noexcept {
@@ -87,23 +87,13 @@ class Pdhg {
 
   /// The last iteration: its p, left in gradient_, is the answer.
   void finish(FrameInfo& info) noexcept {
-    slope();
-    const T step = T(1) / problem_.rho;
-    for (std::size_t k = 0; k < n_; ++k) {
-      const T p = prox_l1_box(x_[k] - step * gradient_[k], threshold_, lo_, hi_);
-      ahead_[k] = T(2) * p - x_[k];
-      gradient_[k] = p;
-    }
-    flush_tiny(ahead_, n_);
-    flush_tiny(gradient_, n_);
+    fall();
     finite_ = all_finite(x_, n_) && all_finite(ahead_, n_);  // the projection would have turned NaN into a number
     const double size = static_cast<double>(dot(gradient_, gradient_, n_));
-    const double moved = static_cast<double>(squared_distance(gradient_, x_, n_));
-    for (std::size_t k = 0; k < n_; ++k) x_[k] += problem_.relaxation * (gradient_[k] - x_[k]);
-    flush_tiny(x_, n_);
+    const double moved = static_cast<double>(squared_distance(ahead_, gradient_, n_));  // 2 p - x from p
+    info.primal_residual = size > 0.0 ? square_root(moved / size) : 0.0;
     // The picture is found; the duals are moved for those who ask for them.
     if (problem_.warm_start || problem_.measure_gap || problem_.point.iterations == 1) rise();
-    info.primal_residual = size > 0.0 ? square_root(moved / size) : 0.0;
     judge(info);
   }
 
@@ -130,11 +120,7 @@ class Pdhg {
   /// Relaxation may have carried it beyond its bounds.
   const T* bounded_dual() noexcept {
     if (!sparse_basis_ || !problem_.measure_gap) return nullptr;
-    const T bound = problem_.lambda;
-    for (std::size_t k = 0; k < coefficient_count_; ++k) {
-      const T above = basis_dual_[k] > -bound ? basis_dual_[k] : -bound;
-      coefficients_[k] = above < bound ? above : bound;
-    }
+    for (std::size_t k = 0; k < coefficient_count_; ++k) coefficients_[k] = within(basis_dual_[k], problem_.lambda);
     return coefficients_;
   }
 

@@ -6,12 +6,6 @@ namespace compueye::recon::core {
 namespace {
 
 template <class T>
-COMPUEYE_INLINE T flushed(T value) {
-  const T limit = static_cast<T>(tiny);
-  return (value < limit && value > -limit) ? T(0) : value;
-}
-
-template <class T>
 COMPUEYE_INLINE void prox_step_of(const T* __restrict x, T* __restrict z, T* __restrict u, std::size_t n, T relaxation,
                                   T threshold, T lo, T hi) {
   const T rest = T(1) - relaxation;

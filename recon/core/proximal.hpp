@@ -14,6 +14,13 @@ template <class T>
   return above < hi ? above : hi;
 }
 
+/// The nearest number to q of at most this magnitude: the proximal map of the conjugate of bound * |x|.
+template <class T>
+[[nodiscard]] constexpr T within(T q, T bound) noexcept {
+  const T above = q > -bound ? q : -bound;
+  return above < bound ? above : bound;
+}
+
 /// One over-relaxed ADMM half-step on a block of n variables (Boyd et al. 2011, eq. 3.19 with 3.1.1's scaled dual):
 ///   t = relaxation * x + (1 - relaxation) * z + u;  z = prox(t);  u = t - z
 /// Values of u below `tiny` become zero, so that no dual decays into subnormal numbers.
@@ -39,6 +46,12 @@ void blend_difference(const double* a, const double* b, double share, double* ou
 /// Magnitudes below this are noughts to the frame path. White is 1 and an LSB at least 1e-6 of it, so nothing is lost,
 /// and products with entries of A above 1e-13 stay far above the smallest normal float32.
 inline constexpr double tiny = 1e-20;
+
+template <class T>
+[[nodiscard]] constexpr T flushed(T value) noexcept {
+  const T limit = static_cast<T>(tiny);
+  return (value < limit && value > -limit) ? T(0) : value;
+}
 
 void flush_tiny(float* a, std::size_t n) noexcept;
 void flush_tiny(double* a, std::size_t n) noexcept;

@@ -7,17 +7,12 @@ namespace compueye::recon::core {
 namespace {
 
 template <class T>
-COMPUEYE_INLINE T flushed(T value) {
-  const T limit = static_cast<T>(tiny);
-  return (value < limit && value > -limit) ? T(0) : value;
-}
-
-template <class T>
-COMPUEYE_INLINE void descend_of(const T* __restrict g, T step, T threshold, T lo, T hi, T relaxation, T* __restrict x,
+COMPUEYE_INLINE void descend_of(T* __restrict g, T step, T threshold, T lo, T hi, T relaxation, T* __restrict x,
                                 T* __restrict ahead, std::size_t n) {
   for (std::size_t k = 0; k < n; ++k) {
     const T before = x[k];
     const T p = prox_l1_box(before - step * g[k], threshold, lo, hi);
+    g[k] = flushed(p);
     ahead[k] = flushed(T(2) * p - before);
     x[k] = flushed(before + relaxation * (p - before));
   }
@@ -26,21 +21,19 @@ COMPUEYE_INLINE void descend_of(const T* __restrict g, T step, T threshold, T lo
 template <class T>
 COMPUEYE_INLINE void ascend_of(const T* __restrict c, T step, T bound, T relaxation, T* __restrict q, std::size_t n) {
   for (std::size_t k = 0; k < n; ++k) {
-    const T t = q[k] + step * c[k];
-    const T above = t > -bound ? t : -bound;
-    const T dual = above < bound ? above : bound;
+    const T dual = within(q[k] + step * c[k], bound);
     q[k] = flushed(q[k] + relaxation * (dual - q[k]));
   }
 }
 
 }  // namespace
 
-COMPUEYE_MULTIVERSION void descend(const float* g, float step, float threshold, float lo, float hi, float relaxation,
+COMPUEYE_MULTIVERSION void descend(float* g, float step, float threshold, float lo, float hi, float relaxation,
                                    float* x, float* ahead, std::size_t n) noexcept {
   descend_of(g, step, threshold, lo, hi, relaxation, x, ahead, n);
 }
-COMPUEYE_MULTIVERSION void descend(const double* g, double step, double threshold, double lo, double hi,
-                                   double relaxation, double* x, double* ahead, std::size_t n) noexcept {
+COMPUEYE_MULTIVERSION void descend(double* g, double step, double threshold, double lo, double hi, double relaxation,
+                                   double* x, double* ahead, std::size_t n) noexcept {
   descend_of(g, step, threshold, lo, hi, relaxation, x, ahead, n);
 }
 COMPUEYE_MULTIVERSION void ascend(const float* c, float step, float bound, float relaxation, float* q,

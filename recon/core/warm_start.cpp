@@ -11,7 +11,6 @@ WarmStart<T>::WarmStart(const FrameProblem<T>& problem, Workspace& workspace) no
   if (!problem.warm_start) return;
   mark_ = workspace.take<Mark>(1);
   last_values_ = workspace.take<T>(problem.a.rows);
-  change_ = workspace.take<T>(problem.a.rows);
 }
 
 /// Memory that no frame of this problem has written may hold anything; that it holds this by chance is one in 2^64.
@@ -38,12 +37,13 @@ bool WarmStart<T>::allowed(WeightedDualStep<T>& dual_step) const noexcept {
 
   const FrameSamples<T>& samples = dual_step.samples();
   const T* values = samples.values();
+  T* change = dual_step.row_scratch();
   for (std::size_t i = 0; i < problem_->a.rows; ++i) {
     const bool both = samples.weights()[i] > T(0) && last_values_[i] != T(0);
-    change_[i] = both ? values[i] - last_values_[i] : T(0);
+    change[i] = both ? values[i] - last_values_[i] : T(0);
   }
-  flush_tiny(change_, problem_->a.rows);
-  return dual_step.squared_size(change_) <= limit * dual_step.squared_size(values);
+  flush_tiny(change, problem_->a.rows);
+  return dual_step.squared_size(change) <= limit * dual_step.squared_size(values);
 }
 
 template <class T>

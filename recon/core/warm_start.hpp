@@ -43,7 +43,6 @@ class WarmStart {
   const FrameProblem<T>* problem_;
   Mark* mark_ = nullptr;
   T* last_values_ = nullptr;  // nought where a channel was missing
-  T* change_ = nullptr;
 };
 
 extern template class WarmStart<float>;

@@ -4,6 +4,7 @@
 
 #include "recon/core/frame_problem.hpp"
 #include "recon/core/frame_samples.hpp"
+#include "recon/core/reweighted_channels.hpp"
 #include "recon/core/workspace.hpp"
 
 namespace compueye::recon::core {
@@ -47,11 +48,8 @@ class WeightedDualStep {
   FrameSamples<T> samples_;
   T* residual_;
   T* step_;
-  std::size_t* index_;    // S, positions among the seeing rows
-  double* substitution_;  // Cholesky factor of F_SS + D
-  double* unknown_;       // c
+  ReweightedChannels<T> reweighted_;
   T* scratch_;
-  std::size_t reweighted_ = 0;
 };
 
 extern template class WeightedDualStep<float>;

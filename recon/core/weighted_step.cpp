@@ -1,6 +1,5 @@
 #include "recon/core/weighted_step.hpp"
 
-#include "recon/core/cholesky.hpp"
 #include "recon/core/proximal.hpp"
 #include "recon/core/vector_sums.hpp"
 
@@ -12,10 +11,8 @@ WeightedStep<T>::WeightedStep(const FrameProblem<T>& problem, Workspace& workspa
       samples_(problem, workspace),
       residual_(workspace.take<T>(problem.a.rows)),
       correction_(workspace.take<T>(problem.a.rows)),
-      index_(workspace.take<std::size_t>(problem.max_reweighted)),
+      reweighted_(problem.max_reweighted, workspace),
       inverse_rows_(workspace.take<T>(problem.max_reweighted * problem.a.rows)),
-      substitution_(workspace.take<double>(problem.max_reweighted * problem.max_reweighted)),
-      unknown_(workspace.take<double>(problem.max_reweighted)),
       inverse_scratch_(workspace.take<T>(problem.inverse.scratch_size())) {
   if (problem.metric.is_identity()) return;
   smooth_ = workspace.take<T>(problem.pixels());
@@ -26,34 +23,30 @@ WeightedStep<T>::WeightedStep(const FrameProblem<T>& problem, Workspace& workspa
 
 template <class T>
 bool WeightedStep<T>::begin(const float* y, const float* weights) noexcept {
-  reweighted_ = 0;
-  if (!samples_.gather(y, weights) || samples_.channels_reweighted() > problem_->max_reweighted) return false;
-  for (std::size_t i = 0; i < problem_->a.rows; ++i) {
-    if (samples_.weights()[i] != T(1)) index_[reweighted_++] = i;
-  }
-  return factor_substitution();
+  return samples_.gather(y, weights) && reweighted_.list(samples_) && factor_substitution();
 }
 
 template <class T>
 bool WeightedStep<T>::factor_substitution() noexcept {
-  const std::size_t n = reweighted_;
+  const std::size_t n = reweighted_.count(), *rows = reweighted_.rows();
+  double* matrix = reweighted_.matrix();
   for (std::size_t s = 0; s < n; ++s) {
     T* row = inverse_rows_ + s * problem_->a.rows;
-    expand_row(problem_->inverse, index_[s], row, inverse_scratch_);
-    for (std::size_t t = 0; t <= s; ++t) substitution_[s * n + t] = static_cast<double>(row[index_[t]]);
-    const double weight = static_cast<double>(samples_.weights()[index_[s]]);
-    substitution_[s * n + s] += weight / (static_cast<double>(problem_->rho) * (1.0 - weight));
+    expand_row(problem_->inverse, rows[s], row, inverse_scratch_);
+    for (std::size_t t = 0; t <= s; ++t) matrix[s * n + t] = static_cast<double>(row[rows[t]]);
+    const double weight = static_cast<double>(samples_.weights()[rows[s]]);
+    matrix[s * n + s] += weight / (static_cast<double>(problem_->rho) * (1.0 - weight));
   }
-  return n == 0 || cholesky_factor(substitution_, n);
+  return reweighted_.factor();
 }
 
 template <class T>
 void WeightedStep<T>::substitute() noexcept {
-  for (std::size_t s = 0; s < reweighted_; ++s) {
-    unknown_[s] = static_cast<double>(dot(inverse_rows_ + s * problem_->a.rows, residual_, problem_->a.rows));
+  const std::size_t rows = problem_->a.rows;
+  for (std::size_t s = 0; s < reweighted_.count(); ++s) {
+    reweighted_.values()[s] = static_cast<double>(dot(inverse_rows_ + s * rows, residual_, rows));
   }
-  cholesky_solve(substitution_, reweighted_, unknown_);
-  for (std::size_t s = 0; s < reweighted_; ++s) residual_[index_[s]] -= static_cast<T>(unknown_[s]);
+  reweighted_.replace(residual_);
 }
 
 template <class T>
@@ -61,11 +54,12 @@ void WeightedStep<T>::apply(T* v, const T* shift) noexcept {
   const std::size_t rows = problem_->a.rows;
   samples_.residual(v, residual_);
   for (std::size_t i = 0; shift != nullptr && i < rows; ++i) residual_[i] -= shift[i];
-  if (reweighted_ > 0) substitute();
+  if (reweighted_.count() > 0) substitute();
   flush_tiny(residual_, rows);
   multiply(problem_->inverse, residual_, correction_, inverse_scratch_);
-  for (std::size_t s = 0; s < reweighted_; ++s) {
-    if (samples_.weights()[index_[s]] == T(0)) correction_[index_[s]] = T(0);
+  for (std::size_t s = 0; s < reweighted_.count(); ++s) {
+    const std::size_t i = reweighted_.rows()[s];
+    if (samples_.weights()[i] == T(0)) correction_[i] = T(0);
   }
   flush_tiny(correction_, rows);
   if (problem_->metric.is_identity()) {

@@ -4,6 +4,7 @@
 
 #include "recon/core/frame_problem.hpp"
 #include "recon/core/frame_samples.hpp"
+#include "recon/core/reweighted_channels.hpp"
 #include "recon/core/workspace.hpp"
 
 namespace compueye::recon::core {
@@ -47,15 +48,12 @@ class WeightedStep {
   FrameSamples<T> samples_;
   T* residual_;
   T* correction_;
-  std::size_t* index_;    // S, positions among the seeing rows
-  T* inverse_rows_;       // H_S, |S| x rows
-  double* substitution_;  // Cholesky factor of H_SS + D
-  double* unknown_;       // c
+  ReweightedChannels<T> reweighted_;
+  T* inverse_rows_;  // H_S, |S| x rows
   T* inverse_scratch_;
   T* smooth_ = nullptr;  // K0^-1 A' s, when K0 is not the identity
   T* coefficients_ = nullptr;
   T* scratch_ = nullptr;
-  std::size_t reweighted_ = 0;
 };
 
 extern template class WeightedStep<float>;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "firmware/app/report/nearest_name.hpp"
+#include "firmware/app/options/named_kinds.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
 #include "recon/worker_threads.hpp"
@@ -25,25 +25,6 @@ Result<void> need(bool ok, const char* option, const std::string& sentence) {
 Result<void> not_negative(const char* option, const std::optional<double>& value) {
   const bool ok = !value || (std::isfinite(*value) && *value >= 0.0 && *value <= 1e12);
   return need(ok, option, fmt::format("is {}, expected a number from 0 to 1e12", value.value_or(0.0)));
-}
-
-/// The kinds that the words name, or all of them; in the table's order.
-template <class Kind>
-Result<std::vector<Kind>> kinds_of(const char* option, const std::vector<std::string>& words,
-                                   std::span<const recon::Named<Kind>> table) {
-  std::vector<std::string_view> known;
-  for (const auto& named : table) known.push_back(named.name);
-  for (const std::string& word : words) {
-    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
-    return hal::fail(
-        ErrorCode::usage, option,
-        fmt::format("is '{}', expected one of {}{}", word, fmt::join(known, ", "), suggestion(word, known)));
-  }
-  std::vector<Kind> kinds;
-  for (const auto& named : table) {
-    if (words.empty() || std::find(words.begin(), words.end(), named.name) != words.end()) kinds.push_back(named.kind);
-  }
-  return kinds;
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <span>
 #include <string_view>
 
+#include "firmware/app/options/named_kinds.hpp"
 #include "firmware/app/pareto/machine.hpp"
-#include "firmware/app/report/nearest_name.hpp"
 #include "firmware/app/report/number_text.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
@@ -66,20 +66,6 @@ const std::vector<SweepRow>& sweep_rows() {
       {SolverKind::admm, Precision::f64, true, large, factored, few},
   };
   return rows;
-}
-
-template <class Kind>
-hal::Result<void> check_names(const char* option, const std::vector<std::string>& words,
-                              std::span<const recon::Named<Kind>> table) {
-  std::vector<std::string_view> known;
-  for (const auto& named : table) known.push_back(named.name);
-  for (const std::string& word : words) {
-    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
-    return hal::fail(
-        hal::ErrorCode::usage, option,
-        fmt::format("is '{}', expected one of {}{}", word, fmt::join(known, ", "), suggestion(word, known)));
-  }
-  return {};
 }
 
 bool wanted(const std::vector<std::string>& words, std::string_view word) {
@@ -142,9 +128,8 @@ std::string title(const Curve& curve) {
 }
 
 hal::Result<SweepPlan> plan_sweep(const Board& board, const ParetoOptions& options, int seeing) {
-  if (auto ok = check_names("--solvers", options.solvers, recon::solver_names()); !ok)
-    return tl::unexpected(ok.error());
-  if (auto ok = check_names("--bases", options.bases, recon::basis_names()); !ok) return tl::unexpected(ok.error());
+  if (auto ok = kinds_of("--solvers", options.solvers, recon::solver_names()); !ok) return tl::unexpected(ok.error());
+  if (auto ok = kinds_of("--bases", options.bases, recon::basis_names()); !ok) return tl::unexpected(ok.error());
   SweepPlan plan;
   for (const SweepRow& row : sweep_rows()) {
     const std::string_view solver = recon::name(row.solver);
@@ -159,6 +144,11 @@ hal::Result<SweepPlan> plan_sweep(const Board& board, const ParetoOptions& optio
     }
     add_row(row, board, options, plan);
   }
+  // What the board would run comes first: a budget may not reach the rest.
+  std::stable_partition(plan.curves.begin(), plan.curves.end(), [&](const PlannedCurve& planned) {
+    return planned.curve.solver == board.reconstruction.solver && planned.curve.op == board.reconstruction.op &&
+           planned.curve.precision == Precision::f32;
+  });
   if (!plan.curves.empty()) return plan;
   return hal::fail(hal::ErrorCode::usage, "--solvers",
                    "and --bases leave nothing to measure; `compueye reconstruct --help` says what goes with what");

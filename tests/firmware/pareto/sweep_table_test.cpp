@@ -53,13 +53,18 @@ TEST_CASE("only what goes together is swept, with the board's constraint where i
 }
 
 TEST_CASE("the board's own point comes first and is among those of its curve, quick or not") {
-  for (const bool quick : {false, true}) {
-    ParetoOptions options;
-    options.quick = quick;
-    const PlannedCurve first = plan_of(options).curves.front();
-    CHECK(first.curve.solver == SolverKind::admm);
-    CHECK(first.curve.basis == BasisKind::tv);
-    CHECK(std::count(first.iterations.begin(), first.iterations.end(), 17) == 1);
+  for (const SolverKind solver : {SolverKind::admm, SolverKind::pdhg}) {
+    for (const bool quick : {false, true}) {
+      ParetoOptions options;
+      options.quick = quick;
+      Board board = some_board();
+      board.reconstruction.solver = solver;
+      const SweepPlan plan = plan_sweep(board, options, 64).value();
+      const PlannedCurve& first = plan.curves.front();
+      CHECK(first.curve.solver == solver);
+      CHECK(first.curve.basis == BasisKind::tv);
+      CHECK(std::count(first.iterations.begin(), first.iterations.end(), 17) == 1);
+    }
   }
 }
 
