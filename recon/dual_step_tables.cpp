@@ -1,18 +1,12 @@
 #include "recon/dual_step_tables.hpp"
 
-#include <bit>
 #include <cstddef>
 
 #include "recon/leading_modes.hpp"
+#include "recon/quantised_response.hpp"
 
 namespace compueye::recon {
 namespace {
-
-/// To nearest, ties to even; finite values only.
-std::uint16_t bfloat16(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  return static_cast<std::uint16_t>((bits + 0x7FFFU + ((bits >> 16U) & 1U)) >> 16U);
-}
 
 /// A mode this much below the rest's step gets a second column: its rounding then moves it by less than one part in
 /// 2^17 of the rest's step instead of 2^9.
@@ -26,14 +20,14 @@ struct ClassModes {
   [[nodiscard]] std::size_t size() const { return count + 1 + order * count; }
 };
 
-/// What bfloat16 leaves of a number, and what it leaves of the rest.
+/// Rows of first columns and of second ones; nought where there is no mode.
 void push_vectors(const ClassModes& modes, std::size_t rank, std::size_t refined, std::vector<std::uint16_t>& out) {
   for (std::size_t p = 0; p < modes.order; ++p) {
     const float* row = modes.vectors() + p * modes.count;
-    for (std::size_t k = 0; k < rank; ++k) out.push_back(k < modes.count ? bfloat16(row[k]) : std::uint16_t{0});
+    const auto entry = [&](std::size_t k) { return k < modes.count ? static_cast<double>(row[k]) : 0.0; };
+    for (std::size_t k = 0; k < rank; ++k) out.push_back(bf16_of(entry(k)));
     for (std::size_t k = 0; k < refined; ++k) {
-      const float kept = k < modes.count ? std::bit_cast<float>(std::uint32_t{bfloat16(row[k])} << 16U) : 0.0F;
-      out.push_back(k < modes.count ? bfloat16(row[k] - kept) : std::uint16_t{0});
+      out.push_back(bf16_of(entry(k) - static_cast<double>(float_of_bf16(bf16_of(entry(k))))));
     }
   }
 }
