@@ -14,9 +14,10 @@ int resolve_rank(const Plan& plan, int order) noexcept {
   return std::min(order, plan.rank > 0 ? plan.rank : std::max(least_by_rule, order / rows_a_mode));
 }
 
-double basis_share(BasisKind basis) noexcept {
+double basis_share(BasisKind basis, bool every_mode) noexcept {
   if (basis == BasisKind::identity) return 0.01;
-  return basis == BasisKind::tv ? 0.4 : 0.25;
+  if (basis == BasisKind::tv) return 0.4;
+  return every_mode ? 0.25 : 0.18;
 }
 
 }  // namespace compueye::recon

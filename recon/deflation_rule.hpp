@@ -10,9 +10,10 @@ namespace compueye::recon {
 /// and 800 take 50 and 29.
 [[nodiscard]] int resolve_rank(const Plan& plan, int order) noexcept;
 
-/// w: the share of the step bound that the basis takes, the modes of A take the rest: .25, and .4 for total variation
-/// (80x80, sigma^2 = .1: .15, .25 and .4 take 17, 18 and 20 iterations in the DCT; .15, .4 and .6 take 42, 32 and 37 in
-/// total variation). In pixels there is no such dual; a hundredth is left for the rounding of the modes.
-[[nodiscard]] double basis_share(BasisKind basis) noexcept;
+/// w: the share of the step bound that the basis takes, the modes of A take the rest: .18, .25 where every mode is
+/// known, and .4 for total variation (80x80, sigma^2 = .1: .12, .18, .25 and .35 take 27, 27, 27 and 29 iterations in
+/// the DCT, and within 10 % 22, 23, 24 and 25; .15, .4 and .6 take 42, 32 and 37 in total variation). In pixels there
+/// is no such dual; a hundredth is left for the rounding of the modes.
+[[nodiscard]] double basis_share(BasisKind basis, bool every_mode) noexcept;
 
 }  // namespace compueye::recon

@@ -1,5 +1,6 @@
 #include "recon/dual_step_tables.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "recon/leading_modes.hpp"
@@ -37,21 +38,26 @@ std::size_t padded(std::size_t count) {
   return (count + group - 1) / group * group;
 }
 
-/// Gains of one class, and how many of its modes are far below the rest's step.
+/// Gains of one class at every level, and how many of its modes are far below the rest's step at the longest tau.
 template <class T>
-void push_gains(const ClassModes& modes, double step, double basis_share, typename core::DeflatedStep<T>::Part& part,
-                std::vector<T>& gains) {
-  const auto gain = [&](std::size_t k) {
-    return 1.0 / (1.0 + step * static_cast<double>(modes.values[k]) / (1.0 - basis_share));
+void push_gains(const ClassModes& modes, const std::vector<double>& penalties, double basis_share,
+                typename core::DeflatedStep<T>::Part& part, DualStepTables<T>& tables) {
+  const auto gain = [&](std::size_t k, double penalty) {
+    return 1.0 / (1.0 + static_cast<double>(modes.values[k]) / (penalty * (1.0 - basis_share)));
   };
-  const double rest = gain(modes.count);
   part.order = modes.order;
   part.rank = padded(modes.count);
-  part.rest = static_cast<T>(rest);
+  const double least = *std::min_element(penalties.begin(), penalties.end());
   std::size_t far = 0;
-  while (far < modes.count && gain(far) * refined_from < rest) ++far;
+  while (far < modes.count && gain(far, least) * refined_from < gain(modes.count, least)) ++far;
   part.refined = padded(far);
-  for (std::size_t k = 0; k < part.rank; ++k) gains.push_back(k < modes.count ? static_cast<T>(gain(k) - rest) : T(0));
+  for (const double penalty : penalties) {
+    const double rest = gain(modes.count, penalty);
+    tables.rests.push_back(static_cast<T>(rest));
+    for (std::size_t k = 0; k < part.rank; ++k) {
+      tables.gains.push_back(k < modes.count ? static_cast<T>(gain(k, penalty) - rest) : T(0));
+    }
+  }
 }
 
 /// Four rows a place where no row lies on an axis; else nothing. The order of the images is that of the permutations,
@@ -71,16 +77,17 @@ std::vector<std::int32_t> rows_of_images(const ParityClasses& classes) {
 }  // namespace
 
 template <class T>
-DualStepTables<T> dual_step_tables(const ParityClasses& classes, const std::vector<float>& modes, int rank, double step,
-                                   double basis_share) {
+DualStepTables<T> dual_step_tables(const ParityClasses& classes, const std::vector<float>& modes, int rank,
+                                   const std::vector<double>& penalties, double basis_share) {
   DualStepTables<T> tables;
   tables.view.order = static_cast<std::size_t>(classes.rows());
   tables.view.classes = classes.count();
+  tables.view.levels = penalties.size();
   const float* values = modes.data();
   for (std::size_t c = 0; c < classes.count(); ++c) {
     auto& part = tables.view.parts[c];
     const ClassModes of_class{static_cast<std::size_t>(classes.order(c)), modes_of_class(classes, c, rank), values};
-    push_gains<T>(of_class, step, basis_share, part, tables.gains);
+    push_gains<T>(of_class, penalties, basis_share, part, tables);
     push_vectors(of_class, part.rank, part.refined, tables.vectors);
     values += of_class.size();
     for (int m = 0; m < classes.rows() && classes.count() > 1; ++m) {
@@ -95,8 +102,9 @@ DualStepTables<T> dual_step_tables(const ParityClasses& classes, const std::vect
     auto& part = tables.view.parts[c];
     part.vectors = tables.vectors.data() + first_vector;
     part.gains = tables.gains.data() + first_gain;
+    part.rest = tables.rests.data() + c * penalties.size();
     first_vector += part.order * part.columns();
-    first_gain += part.rank;
+    first_gain += penalties.size() * part.rank;
     if (classes.count() == 1) continue;
     part.index = tables.index.data() + c * tables.view.order;
     part.share = tables.share.data() + c * tables.view.order;
@@ -104,7 +112,9 @@ DualStepTables<T> dual_step_tables(const ParityClasses& classes, const std::vect
   return tables;
 }
 
-template DualStepTables<float> dual_step_tables(const ParityClasses&, const std::vector<float>&, int, double, double);
-template DualStepTables<double> dual_step_tables(const ParityClasses&, const std::vector<float>&, int, double, double);
+template DualStepTables<float> dual_step_tables(const ParityClasses&, const std::vector<float>&, int,
+                                                const std::vector<double>&, double);
+template DualStepTables<double> dual_step_tables(const ParityClasses&, const std::vector<float>&, int,
+                                                 const std::vector<double>&, double);
 
 }  // namespace compueye::recon

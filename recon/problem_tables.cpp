@@ -156,7 +156,8 @@ void fill_choice(const Response& seeing, const Objective& objective, const Plan&
   }
   if (plan.solver == SolverKind::fista) problem.lipschitz = static_cast<T>(squared_norm_bound(seeing));
   if (plan.solver == SolverKind::pdhg) {
-    problem.basis_step = static_cast<T>(basis_share(objective.basis) * plan.rho / problem.psi.squared_norm());
+    problem.basis_step = static_cast<T>(basis_share(objective.basis, plan.rank >= seeing.rows()) * plan.rho /
+                                        problem.psi.squared_norm());
   }
   if (plan.solver != SolverKind::chambolle_pock) return;
   const PrimalDualSteps steps = primal_dual_steps(seeing, problem.psi.squared_norm());
@@ -165,6 +166,13 @@ void fill_choice(const Response& seeing, const Objective& objective, const Plan&
   problem.primal_steps = tables.primal_steps.data();
   problem.dual_steps = tables.dual_steps.data();
   problem.basis_step = static_cast<T>(steps.basis);
+}
+
+template <class T>
+void fill_schedule(const PenaltyLevels& levels, OwnedTables<T>& tables) {
+  for (const double penalty : levels.penalties) tables.penalties.push_back(static_cast<T>(penalty));
+  tables.problem.schedule = {tables.penalties.size(), static_cast<std::size_t>(levels.iterations_a_level),
+                             tables.penalties.data()};
 }
 
 template <class T>
@@ -210,6 +218,8 @@ hal::Result<void> fill_modes(const Response& seeing, const Objective& objective,
 }
 
 template void fill_iterations(const Plan&, core::FrameProblem<float>&);
+template void fill_schedule(const PenaltyLevels&, OwnedTables<float>&);
+template void fill_schedule(const PenaltyLevels&, OwnedTables<double>&);
 template void fill_iterations(const Plan&, core::FrameProblem<double>&);
 template void fill_inverse(const ParityClasses&, const std::vector<float>&, OwnedTables<float>&);
 template void fill_inverse(const ParityClasses&, const std::vector<double>&, OwnedTables<double>&);

@@ -9,6 +9,7 @@
 #include "recon/core/frame_problem.hpp"
 #include "recon/dense_run_tables.hpp"
 #include "recon/dual_step_tables.hpp"
+#include "recon/penalty_schedule.hpp"
 #include "recon/reconstructor.hpp"
 #include "recon/running_sum_tables.hpp"
 #include "recon/thin_step_tables.hpp"
@@ -36,11 +37,13 @@ struct OwnedTables {
   std::vector<T> atom_norms;
   std::vector<T> modes;
   std::vector<T> mode_weights;
+  std::vector<T> penalties;
   core::FrameProblem<T> problem;
 
   [[nodiscard]] std::size_t bytes() const noexcept {
     return (values.size() + row_table.size() + col_table.size() + metric.size() + inverse.size() + primal_steps.size() +
-            dual_steps.size() + atom_norms.size() + modes.size() + mode_weights.size() + class_share.size()) *
+            dual_steps.size() + atom_norms.size() + modes.size() + mode_weights.size() + class_share.size() +
+            penalties.size()) *
                sizeof(T) +
            (row_start.size() + columns.size() + class_index.size()) * sizeof(std::uint32_t) + sums.bytes() +
            dual_step.bytes() + thin_step.bytes() + runs.bytes();
@@ -61,6 +64,10 @@ void fill_basis(BasisKind kind, int image_rows, int image_cols, OwnedTables<T>& 
 /// and fill_basis().
 template <class T>
 void fill_choice(const Response& seeing, const Objective& objective, const Plan& plan, OwnedTables<T>& tables);
+
+/// The penalties that iterations go through.
+template <class T>
+void fill_schedule(const PenaltyLevels& levels, OwnedTables<T>& tables);
 
 /// The plan's iterations: one where the solver is direct.
 template <class T>

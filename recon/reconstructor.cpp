@@ -38,6 +38,7 @@ struct Reconstructor::Tables {
   int image_cols = 0;
   Objective objective;
   Plan plan;
+  double rho_asked = 0.0;  // 0: by the rule, in plan.rho
   std::vector<std::int32_t> seeing;
   Factor factor;  // of f32 the inverse in use; modes are only kept to be stored
   std::variant<OwnedTables<float>, OwnedTables<double>> by_precision;
@@ -86,8 +87,9 @@ struct Reconstructor::Tables {
       if (!made) return tl::unexpected(made.error());
       factor.values = std::move(*made);
     }
-    tables.dual_step =
-        dual_step_tables<T>(classes, factor.values, plan.rank, 1.0 / plan.rho, basis_share(objective.basis));
+    const PenaltyLevels penalties = fill_schedule(classes, tables);
+    tables.dual_step = dual_step_tables<T>(classes, factor.values, plan.rank, penalties.penalties,
+                                           basis_share(objective.basis, plan.rank >= classes.rows()));
     tables.problem.dual_step = tables.dual_step.view;
     return {};
   }
@@ -107,10 +109,20 @@ struct Reconstructor::Tables {
     }
     fill_inverse(classes, inverse, tables);
     if (plan.solver == SolverKind::admm && objective.basis == BasisKind::identity) {
-      tables.thin_step = thin_step_tables<T>(sees, image_rows, image_cols, classes, inverse);
+      const PenaltyLevels penalties = fill_schedule(classes, tables);
+      tables.thin_step = thin_step_tables<T>(sees, image_rows, image_cols, classes, penalties.penalties);
       tables.problem.thin_step = tables.thin_step.view;
     }
     return {};
+  }
+
+  template <class T>
+  PenaltyLevels fill_schedule(const ParityClasses& classes, OwnedTables<T>& tables) const {
+    Plan asked = plan;
+    asked.rho = rho_asked;
+    PenaltyLevels levels = penalty_levels(objective, asked, plan.rho, classes.rows(), classes.count() > 1);
+    recon::fill_schedule(levels, tables);
+    return levels;
   }
 
   std::vector<float>& inverse_of(OwnedTables<float>&) noexcept { return factor.values; }
@@ -171,6 +183,7 @@ hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& resp
   const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
   if (auto ok = check_scale(squares, response.cols()); !ok) return tl::unexpected(ok.error());
   tables->plan.rho = resolve_rho(response, image_rows, image_cols, objective, plan);
+  tables->rho_asked = plan.rho;
   tables->factor = wanted_factor(response, image_rows, image_cols, objective, tables->plan);
   if (plan.solver == SolverKind::pdhg) tables->plan.rank = tables->factor.rank;
   if (auto ok = check_in_precision(squares, objective, tables->plan); !ok) return tl::unexpected(ok.error());

@@ -1,28 +1,15 @@
 #include "recon/thin_step_tables.hpp"
 
-#include <Eigen/Core>
-
-#include "recon/core/packed_symmetric.hpp"
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace compueye::recon {
 namespace {
 
-constexpr std::size_t most_bytes = 256 * 1024;
+constexpr std::size_t most_bytes = 128 * 1024;
 constexpr std::size_t block = 64;
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-template <class T>
-Matrix unpacked(const T* values, std::size_t order) {
-  const core::PackedSymmetric<T> packed{order, values};
-  Matrix whole(order, order);
-  for (std::size_t i = 0; i < order; ++i) {
-    for (std::size_t j = 0; j < order; ++j) {
-      whole(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = static_cast<double>(packed.at(i, j));
-    }
-  }
-  return whole;
-}
 
 Matrix dense(const Response& a) {
   Matrix whole = Matrix::Zero(a.rows(), a.cols());
@@ -61,32 +48,40 @@ T* make_room(std::vector<T>& values, std::size_t size) {
   return first;
 }
 
-/// Class c of A in lane c: between unit vectors of rows and pixels, the sum over a pixel's images with c's signs.
+/// A's rows in one parity class: between unit vectors of rows and pixels, the sum over a pixel's images with the
+/// class's signs.
 template <class T>
-void fill_folded(const Matrix& a, const ParityClasses& classes, const std::vector<T>& inverse, T* analysis,
-                 T* synthesis, ThinStepTables<T>& tables) {
-  const auto& signs = classes.symmetry().characters;
-  const auto places = static_cast<Eigen::Index>(classes.orbits().size());
+Matrix class_of(const Matrix& a, const std::vector<double>& signs, const ThinStepTables<T>& tables) {
+  const auto places = static_cast<Eigen::Index>(tables.image.size() / 4);
   const auto elements = static_cast<Eigen::Index>(tables.pixel.size() / 4);
-  const T* packed = inverse.data();
-  for (std::size_t c = 0; c < 4; ++c) {
-    Matrix of_class = Matrix::Zero(places, elements);
-    for (Eigen::Index p = 0; p < places; ++p) {
-      const int row = tables.image[static_cast<std::size_t>(4 * p)];
-      for (Eigen::Index e = 0; e < elements; ++e) {
-        for (std::size_t g = 0; g < 4; ++g) {
-          of_class(p, e) += signs[c][g] * a(row, tables.pixel[static_cast<std::size_t>(4 * e) + g]);
-        }
+  Matrix of_class = Matrix::Zero(places, elements);
+  for (Eigen::Index p = 0; p < places; ++p) {
+    const int row = tables.image[static_cast<std::size_t>(4 * p)];
+    for (Eigen::Index e = 0; e < elements; ++e) {
+      for (std::size_t g = 0; g < 4; ++g) {
+        of_class(p, e) += signs[g] * a(row, tables.pixel[static_cast<std::size_t>(4 * e) + g]);
       }
     }
-    const Matrix back = unpacked(packed, static_cast<std::size_t>(places)) * of_class;
-    packed += core::PackedSymmetric<T>::size(static_cast<std::size_t>(places));
-    for (Eigen::Index p = 0; p < places; ++p) {
-      for (Eigen::Index e = 0; e < elements; ++e) {
-        const auto at = static_cast<std::size_t>((p * elements + e) * 4) + c;
-        analysis[at] = static_cast<T>(of_class(p, e));
-        synthesis[at] = static_cast<T>(back(p, e));
-      }
+  }
+  return of_class;
+}
+
+/// What the step needs of `a`, which is all of A or one class of it, in lane `lane` of `lanes`.
+template <class T>
+void fill_lane(const Matrix& a, const std::vector<double>& penalties, std::size_t lane, std::size_t lanes, T* turned,
+               ThinStepTables<T>& tables) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> modes(a * a.transpose());
+  const auto put = [&](const Matrix& m, T* first) {
+    for (Eigen::Index k = 0; k < m.size(); ++k) {
+      first[static_cast<std::size_t>(k) * lanes + lane] = static_cast<T>(m.data()[k]);
+    }
+  };
+  put(modes.eigenvectors(), tables.rotation.data());
+  put(modes.eigenvectors().transpose() * a, turned);
+  T* gain = tables.gains.data();
+  for (const double penalty : penalties) {
+    for (Eigen::Index k = 0; k < a.rows(); ++k, gain += lanes) {
+      gain[lane] = static_cast<T>(1.0 / (std::max(modes.eigenvalues()[k], 0.0) + penalty));
     }
   }
 }
@@ -95,16 +90,17 @@ void fill_folded(const Matrix& a, const ParityClasses& classes, const std::vecto
 
 template <class T>
 ThinStepTables<T> thin_step_tables(const Response& seeing, int image_rows, int image_cols, const ParityClasses& classes,
-                                   const std::vector<T>& inverse) {
+                                   const std::vector<double>& penalties) {
   ThinStepTables<T> tables;
   const bool four = folds(classes, image_rows, image_cols);
   if (classes.count() != 1 && !four) return tables;
-  core::ThinStep<T>& view = tables.view;
-  const std::size_t rows = static_cast<std::size_t>(seeing.rows()) / (four ? 4 : 1);
+  const std::size_t lanes = four ? 4 : 1;
+  const std::size_t rows = static_cast<std::size_t>(seeing.rows()) / lanes;
   const auto cols = static_cast<std::size_t>(seeing.cols());
-  if (cols % block != 0 || 2 * rows * cols * sizeof(T) > most_bytes) return tables;
-  T* analysis = make_room(tables.analysis, rows * cols);
-  T* synthesis = make_room(tables.synthesis, rows * cols);
+  if (cols % block != 0 || rows * cols * sizeof(T) > most_bytes) return tables;
+  T* turned = make_room(tables.turned, rows * cols);
+  tables.gains.assign(penalties.size() * rows * lanes, T(0));
+  tables.rotation.assign(rows * rows * lanes, T(0));
   const Matrix a = dense(seeing);
   if (four) {
     tables.pixel = folded_pixels(image_rows, image_cols);
@@ -113,26 +109,27 @@ ThinStepTables<T> thin_step_tables(const Response& seeing, int image_rows, int i
         tables.image.push_back(permutation[static_cast<std::size_t>(orbit.first)]);
       }
     }
-    fill_folded(a, classes, inverse, analysis, synthesis, tables);
-  } else {
-    const Matrix back = unpacked(inverse.data(), rows) * a;
-    for (std::size_t k = 0; k < rows * cols; ++k) {
-      analysis[k] = static_cast<T>(a.data()[k]);
-      synthesis[k] = static_cast<T>(back.data()[k]);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const auto& signs = classes.symmetry().characters[c];
+      fill_lane(class_of(a, {signs.begin(), signs.end()}, tables), penalties, c, 4, turned, tables);
     }
+  } else {
+    fill_lane(a, penalties, 0, 1, turned, tables);
   }
-  view = {rows,
-          cols,
-          four ? std::size_t{4} : std::size_t{1},
-          analysis,
-          synthesis,
-          tables.pixel.data(),
-          tables.image.data()};
+  tables.view = {rows,
+                 cols,
+                 lanes,
+                 penalties.size(),
+                 turned,
+                 tables.gains.data(),
+                 tables.rotation.data(),
+                 tables.pixel.data(),
+                 tables.image.data()};
   return tables;
 }
 
 template ThinStepTables<float> thin_step_tables(const Response&, int, int, const ParityClasses&,
-                                                const std::vector<float>&);
+                                                const std::vector<double>&);
 template ThinStepTables<double> thin_step_tables(const Response&, int, int, const ParityClasses&,
                                                  const std::vector<double>&);
 

@@ -90,14 +90,18 @@ class Admm : public MadeInWorkspace {
     }
     clear();
     thin_ = problem_.thin_step.rows > 0 && step_.samples().channels_reweighted() == 0;
-    if (thin_) order_samples(problem_.thin_step, step_.samples().values(), samples_in_order_);
+    if (thin_) turn_samples(problem_.thin_step, step_.samples().values(), samples_in_order_, residual_in_order_);
+    penalty_ = problem_.rho;
     SplitResiduals residuals;
     in_pixels_.thresholds = nullptr;
     if (reweights()) {
       for (int k = 0; k < problem_.point.iterations; ++k) iterate(nullptr);
       reweight();
     }
-    for (int k = 1; k <= problem_.point.iterations; ++k) iterate(k == problem_.point.iterations ? &residuals : nullptr);
+    for (int k = 1; k <= problem_.point.iterations; ++k) {
+      if (thin_) follow_schedule(k - 1);
+      iterate(k == problem_.point.iterations ? &residuals : nullptr);
+    }
     finish(residuals, info);
     deliver(x_, finite_, n_, info, x);
     return info;
@@ -143,10 +147,22 @@ class Admm : public MadeInWorkspace {
     if (pixel_copy_) in_pixels_.clear(n_);
   }
 
+  /// The dual that u scales stays what it is.
+  void follow_schedule(int done) noexcept {
+    level_ = problem_.schedule.level(static_cast<std::size_t>(done));
+    const T penalty = problem_.schedule.penalty[level_];
+    if (penalty == penalty_) return;
+    const T scale = penalty_ / penalty;
+    penalty_ = penalty;
+    in_pixels_.threshold = problem_.lambda / penalty;
+    if (done == 0) return;
+    for (std::size_t k = 0; k < n_; ++k) in_pixels_.u[k] *= scale;
+  }
+
   void iterate(SplitResiduals* residuals) noexcept {
     meet();
     if (thin_) {
-      apply(problem_.thin_step, samples_in_order_, x_, residual_in_order_);
+      apply(problem_.thin_step, level_, samples_in_order_, x_, residual_in_order_);
     } else {
       step_.apply(x_);
     }
@@ -222,6 +238,8 @@ class Admm : public MadeInWorkspace {
   T* samples_in_order_;
   T* residual_in_order_;
   bool thin_ = false;
+  std::size_t level_ = 0;
+  T penalty_ = T(1);
   T* thresholds_ = nullptr;
   T* coefficients_ = nullptr;
   T* scratch_ = nullptr;

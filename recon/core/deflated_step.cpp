@@ -20,8 +20,9 @@ using Part = typename DeflatedStep<T>::Part;
 /// t = gains .* (U' in) for first columns and for second ones, four rows at a time, each element in the same order
 /// whatever the vector width.
 template <class T>
-COMPUEYE_INLINE void project_of(const Part<T>& part, const T* __restrict in, T* __restrict t) {
+COMPUEYE_INLINE void project_of(const Part<T>& part, std::size_t level, const T* __restrict in, T* __restrict t) {
   const std::size_t columns = part.columns();
+  const T* __restrict gains = part.gains + level * part.rank;
   const std::uint16_t* __restrict row = part.vectors;
   for (std::size_t k = 0; k < columns; ++k) t[k] = T(0);
   std::size_t p = 0;
@@ -36,7 +37,7 @@ COMPUEYE_INLINE void project_of(const Part<T>& part, const T* __restrict in, T* 
     for (std::size_t k = 0; k < columns; ++k) t[k] += in[p] * widened<T>(row[k]);
   }
   for (std::size_t k = 0; k < part.refined; ++k) t[k] += t[part.rank + k];
-  for (std::size_t k = 0; k < part.rank; ++k) t[k] *= part.gains[k];
+  for (std::size_t k = 0; k < part.rank; ++k) t[k] *= gains[k];
   for (std::size_t k = 0; k < part.refined; ++k) t[part.rank + k] = t[k];
 }
 
@@ -54,20 +55,20 @@ COMPUEYE_INLINE T row_times(const std::uint16_t* __restrict row, const T* __rest
 
 /// in = f_0 in + U t
 template <class T>
-COMPUEYE_INLINE void expand_of(const Part<T>& part, const T* __restrict t, T* __restrict in) {
+COMPUEYE_INLINE void expand_of(const Part<T>& part, std::size_t level, const T* __restrict t, T* __restrict in) {
   const std::size_t columns = part.columns();
   for (std::size_t p = 0; p < part.order; ++p) {
-    in[p] = part.rest * in[p] + row_times(part.vectors + p * columns, t, columns);
+    in[p] = part.rest[level] * in[p] + row_times(part.vectors + p * columns, t, columns);
   }
 }
 
-COMPUEYE_MULTIVERSION void step_class(const Part<float>& part, float* in, float* t) noexcept {
-  project_of<float>(part, in, t);
-  expand_of<float>(part, t, in);
+COMPUEYE_MULTIVERSION void step_class(const Part<float>& part, std::size_t level, float* in, float* t) noexcept {
+  project_of<float>(part, level, in, t);
+  expand_of<float>(part, level, t, in);
 }
-COMPUEYE_MULTIVERSION void step_class(const Part<double>& part, double* in, double* t) noexcept {
-  project_of<double>(part, in, t);
-  expand_of<double>(part, t, in);
+COMPUEYE_MULTIVERSION void step_class(const Part<double>& part, std::size_t level, double* in, double* t) noexcept {
+  project_of<double>(part, level, in, t);
+  expand_of<double>(part, level, t, in);
 }
 
 /// From the rows of a place's four images to its four classes, or back.
@@ -81,7 +82,7 @@ COMPUEYE_INLINE void butterfly(T& a, T& b, T& c, T& d) {
 }
 
 template <class T>
-void apply_to_images(const DeflatedStep<T>& f, const T* x, T* y, T* scratch) noexcept {
+void apply_to_images(const DeflatedStep<T>& f, std::size_t level, const T* x, T* y, T* scratch) noexcept {
   const std::size_t places = f.order / 4;
   T *in = scratch, *t = scratch + f.order;
   for (std::size_t p = 0; p < places; ++p) {
@@ -95,7 +96,7 @@ void apply_to_images(const DeflatedStep<T>& f, const T* x, T* y, T* scratch) noe
   }
   const std::size_t apart = (f.scratch_size() - f.order) / 4;
   f.crew.share(4, f.order * apart, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) step_class(f.parts[c], in + c * places, t + c * apart);
+    for (std::size_t c = begin; c < end; ++c) step_class(f.parts[c], level, in + c * places, t + c * apart);
   });
   for (std::size_t p = 0; p < places; ++p) {
     const std::int32_t* rows = f.images + 4 * p;
@@ -109,12 +110,12 @@ void apply_to_images(const DeflatedStep<T>& f, const T* x, T* y, T* scratch) noe
 }
 
 template <class T>
-void apply_of(const DeflatedStep<T>& f, const T* x, T* y, T* scratch) noexcept {
-  if (f.images != nullptr) return apply_to_images(f, x, y, scratch);
+void apply_of(const DeflatedStep<T>& f, std::size_t level, const T* x, T* y, T* scratch) noexcept {
+  if (f.images != nullptr) return apply_to_images(f, level, x, y, scratch);
   T *in = scratch, *t = scratch + f.order;
   if (f.classes == 1) {
     for (std::size_t m = 0; m < f.order; ++m) y[m] = x[m];
-    return step_class(f.parts[0], y, t);
+    return step_class(f.parts[0], level, y, t);
   }
   for (std::size_t m = 0; m < f.order; ++m) y[m] = T(0);
   for (std::size_t c = 0; c < f.classes; ++c) {
@@ -123,7 +124,7 @@ void apply_of(const DeflatedStep<T>& f, const T* x, T* y, T* scratch) noexcept {
     for (std::size_t m = 0; m < f.order; ++m) {
       if (part.index[m] >= 0) in[part.index[m]] += part.share[m] * x[m];
     }
-    step_class(part, in, t);
+    step_class(part, level, in, t);
     for (std::size_t m = 0; m < f.order; ++m) {
       if (part.index[m] >= 0) y[m] += part.share[m] * in[part.index[m]];
     }
@@ -141,7 +142,7 @@ COMPUEYE_INLINE double entry_of(const Part<T>& part, std::size_t i, std::size_t 
   const std::ptrdiff_t p = place_of<T>(part, i), q = place_of<T>(part, j);
   if (q < 0) return 0.0;
   const T over_modes = row_times(part.vectors + static_cast<std::size_t>(q) * part.columns(), t, part.columns());
-  const double entry = static_cast<double>(over_modes) + (p == q ? static_cast<double>(part.rest) : 0.0);
+  const double entry = static_cast<double>(over_modes) + (p == q ? static_cast<double>(part.rest[0]) : 0.0);
   if (part.index == nullptr) return entry;
   return entry * static_cast<double>(part.share[i]) * static_cast<double>(part.share[j]);
 }
@@ -167,11 +168,11 @@ COMPUEYE_INLINE void restrict_of(const DeflatedStep<T>& f, const std::size_t* in
 
 }  // namespace
 
-void apply(const DeflatedStep<float>& f, const float* x, float* y, float* scratch) noexcept {
-  apply_of(f, x, y, scratch);
+void apply(const DeflatedStep<float>& f, std::size_t level, const float* x, float* y, float* scratch) noexcept {
+  apply_of(f, level, x, y, scratch);
 }
-void apply(const DeflatedStep<double>& f, const double* x, double* y, double* scratch) noexcept {
-  apply_of(f, x, y, scratch);
+void apply(const DeflatedStep<double>& f, std::size_t level, const double* x, double* y, double* scratch) noexcept {
+  apply_of(f, level, x, y, scratch);
 }
 COMPUEYE_MULTIVERSION void restrict_to(const DeflatedStep<float>& f, const std::size_t* index, std::size_t count,
                                        double* out, float* scratch) noexcept {

@@ -23,8 +23,8 @@ struct DeflatedStep {
     std::size_t rank = 0;                    ///< a multiple of vector_group
     std::size_t refined = 0;                 ///< how many have a second column; a multiple of vector_group, <= rank
     const std::uint16_t* vectors = nullptr;  ///< order x columns(), row-major: first columns, then second ones
-    const T* gains = nullptr;                ///< rank of them, f_k - f_0; nought where there is no mode
-    T rest = T(0);                           ///< f_0
+    const T* gains = nullptr;                ///< levels x rank, f_k - f_0; nought where there is no mode
+    const T* rest = nullptr;                 ///< levels of them, f_0
     const std::int32_t* index = nullptr;     ///< rows of A: a row's place in the class, -1 for none; null: its own
     const T* share = nullptr;                ///< rows of A: entry of the class's unit vector at a row
 
@@ -35,6 +35,7 @@ struct DeflatedStep {
 
   std::size_t order = 0;  ///< rows of A
   std::size_t classes = 0;
+  std::size_t levels = 1;  ///< of tau, as in a PenaltySchedule
   /// Where every row has three mirror images: the rows of A of each place of the classes, four a place, so that class c
   /// takes half the row of image g with the sign of (-1)^(number of bits that c and g share). Else null.
   const std::int32_t* images = nullptr;
@@ -49,11 +50,11 @@ struct DeflatedStep {
   }
 };
 
-/// y = F x. x and y may not overlap.
-void apply(const DeflatedStep<float>& f, const float* x, float* y, float* scratch) noexcept;
-void apply(const DeflatedStep<double>& f, const double* x, double* y, double* scratch) noexcept;
+/// y = F x with the tau of `level`. x and y may not overlap.
+void apply(const DeflatedStep<float>& f, std::size_t level, const float* x, float* y, float* scratch) noexcept;
+void apply(const DeflatedStep<double>& f, std::size_t level, const double* x, double* y, double* scratch) noexcept;
 
-/// The lower triangle of F's rows and columns `index`, `count` of them, row-major count x count.
+/// The lower triangle of the first level's F's rows and columns `index`, `count` of them, row-major count x count.
 void restrict_to(const DeflatedStep<float>& f, const std::size_t* index, std::size_t count, double* out,
                  float* scratch) noexcept;
 void restrict_to(const DeflatedStep<double>& f, const std::size_t* index, std::size_t count, double* out,

@@ -10,6 +10,7 @@
 #include "recon/core/frame_info.hpp"
 #include "recon/core/linear_operator.hpp"
 #include "recon/core/metric.hpp"
+#include "recon/core/penalty_schedule.hpp"
 #include "recon/core/thin_step.hpp"
 
 namespace compueye::recon::core {
@@ -43,6 +44,7 @@ struct FrameProblem {
   T hi = T(0);  ///< +infinity where there is no bound
   T lambda = T(0);
   T rho = T(1);
+  PenaltySchedule<T> schedule;  ///< for pdhg, and admm with a thin step
   T relaxation = T(1);
   T l1_reweighting = T(0);          ///< admm in pixels: e of the second pass's weights 2e / (|x| + e); 0: one pass
   T lipschitz = T(1);               ///< at least ||A||_2^2, for fista

@@ -12,7 +12,7 @@ namespace compueye::recon::core {
 // on the way: tests/recon/frozen_frame_test.cpp solves every setting once more from its bytes.
 
 inline constexpr std::uint64_t frozen_magic = 0x4559454E5A4F5246;  // "FROZNEYE"
-inline constexpr std::uint64_t frozen_version = 2;                 // goes up whenever this file changes
+inline constexpr std::uint64_t frozen_version = 3;                 // goes up whenever this file changes
 inline constexpr std::size_t frozen_alignment = 64;
 
 template <class Archive>
@@ -66,14 +66,15 @@ template <class Archive>
 void describe(DeflatedStep<float>& step, Archive& archive) {
   archive.number(step.order);
   archive.number(step.classes);
+  archive.number(step.levels);
   archive.table(step.images, step.order);
   for (auto& part : step.parts) {
     archive.number(part.order);
     archive.number(part.rank);
     archive.number(part.refined);
     archive.table(part.vectors, part.order * part.columns());
-    archive.table(part.gains, part.rank);
-    archive.number(part.rest);
+    archive.table(part.gains, step.levels * part.rank);
+    archive.table(part.rest, step.levels);
     archive.table(part.index, step.order);
     archive.table(part.share, step.order);
   }
@@ -110,8 +111,10 @@ void describe(ThinStep<float>& step, Archive& archive) {
   archive.number(step.rows);
   archive.number(step.cols);
   archive.number(step.lanes);
-  archive.table(step.analysis, step.rows * step.cols);
-  archive.table(step.synthesis, step.rows * step.cols);
+  archive.number(step.levels);
+  archive.table(step.turned, step.rows * step.cols);
+  archive.table(step.gains, step.levels * step.rows * step.lanes);
+  archive.table(step.rotation, step.rows * step.rows * step.lanes);
   archive.table(step.pixel, step.lanes == 4 ? step.cols : 0);
   archive.table(step.image, step.lanes == 4 ? 4 * step.rows : 0);
 }
@@ -155,6 +158,9 @@ void describe(FrameProblem<float>& problem, Archive& archive) {
   archive.number(problem.hi);
   archive.number(problem.lambda);
   archive.number(problem.rho);
+  archive.number(problem.schedule.levels);
+  archive.number(problem.schedule.iterations_a_level);
+  archive.table(problem.schedule.penalty, problem.schedule.levels);
   archive.number(problem.relaxation);
   archive.number(problem.l1_reweighting);
   archive.number(problem.lipschitz);

@@ -9,7 +9,12 @@
 #define COMPUEYE_MULTIVERSION __attribute__((noinline))
 #endif
 
+#if defined(COMPUEYE_NO_MULTIVERSION)
+// Sanitizers put several checks beside every access: copies of those in every caller take the compiler minutes.
+#define COMPUEYE_INLINE inline
+#else
 #define COMPUEYE_INLINE inline __attribute__((always_inline))
+#endif
 
 /// A part of a multiversion function: inlined into each clone; a function of its own, with a frame of its own, where
 /// there are none and stack is dear.

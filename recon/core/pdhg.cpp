@@ -33,7 +33,6 @@ class Pdhg {
     const T beyond = T(1e30);
     lo_ = problem.constrained && problem.lo > -beyond ? problem.lo : -beyond;
     hi_ = problem.constrained && problem.hi < beyond ? problem.hi : beyond;
-    threshold_ = sparse_basis_ ? T(0) : problem.lambda / problem.rho;
   }
 
   FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
@@ -45,6 +44,7 @@ class Pdhg {
     info.warm = warm_start_.allowed(dual_step_);
     if (!info.warm) start_cold();
     for (int k = 1; k < problem_.point.iterations; ++k) {
+      set_penalty(k - 1);
       fall();
       rise();
     }
@@ -61,6 +61,14 @@ class Pdhg {
     for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = T(0);
   }
 
+  void set_penalty(int done) noexcept {
+    dual_step_.set_level(problem_.schedule.level(static_cast<std::size_t>(done)));
+    const T rho = problem_.schedule.penalty[dual_step_.level()];
+    descent_ = T(1) / rho;
+    threshold_ = sparse_basis_ ? T(0) : problem_.lambda / rho;
+    basis_step_ = problem_.basis_step * (rho / problem_.rho);
+  }
+
   /// gradient = A'u + Psi'q, then p in its place
   void fall() noexcept {
     if (sparse_basis_) {
@@ -70,8 +78,8 @@ class Pdhg {
     }
     dual_step_.samples().adjoint_accumulate(row_dual_, gradient_);
     problem_.crew.share(n_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
-      descend(gradient_ + begin, T(1) / problem_.rho, threshold_, lo_, hi_, problem_.relaxation, x_ + begin,
-              ahead_ + begin, end - begin);
+      descend(gradient_ + begin, descent_, threshold_, lo_, hi_, problem_.relaxation, x_ + begin, ahead_ + begin,
+              end - begin);
     });
   }
 
@@ -80,13 +88,14 @@ class Pdhg {
     if (!sparse_basis_) return;
     analyse(problem_.psi, ahead_, coefficients_, scratch_);
     problem_.crew.share(coefficient_count_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
-      ascend(coefficients_ + begin, problem_.basis_step, problem_.lambda, problem_.relaxation, basis_dual_ + begin,
+      ascend(coefficients_ + begin, basis_step_, problem_.lambda, problem_.relaxation, basis_dual_ + begin,
              end - begin);
     });
   }
 
   /// The last iteration: its p, left in gradient_, is the answer.
   void finish(FrameInfo& info) noexcept {
+    set_penalty(problem_.point.iterations - 1);
     fall();
     finite_ = all_finite(x_, n_) && all_finite(ahead_, n_);  // the projection would have turned NaN into a number
     const double size = static_cast<double>(dot(gradient_, gradient_, n_));
@@ -140,7 +149,9 @@ class Pdhg {
   DualityGap<T> gap_;
   T lo_ = T(0);
   T hi_ = T(0);
+  T descent_ = T(0);
   T threshold_ = T(0);
+  T basis_step_ = T(0);
   bool finite_ = true;
 };
 

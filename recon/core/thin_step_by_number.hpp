@@ -22,9 +22,10 @@ COMPUEYE_STAGE void turn_picture(T* v, std::size_t cols) {
 }
 
 template <class T, std::size_t lanes>
-COMPUEYE_STAGE void subtract_forward(const ThinStep<T>& step, const T* samples, const T* v, T* residual) {
+COMPUEYE_STAGE void subtract_forward(const ThinStep<T>& step, const T* gains, const T* samples, const T* v,
+                                     T* residual) {
   for (std::size_t i = 0; i < step.rows; ++i) {
-    const T* row = step.analysis + i * step.cols;
+    const T* row = step.turned + i * step.cols;
     T sum[16] = {};
     for (std::size_t k = 0; k < step.cols; k += 16) {
       for (std::size_t l = 0; l < 16; ++l) sum[l] += row[k + l] * v[k + l];
@@ -32,7 +33,8 @@ COMPUEYE_STAGE void subtract_forward(const ThinStep<T>& step, const T* samples, 
     for (std::size_t half = 8; half >= lanes; half /= 2) {
       for (std::size_t l = 0; l < half; ++l) sum[l] += sum[l + half];
     }
-    for (std::size_t l = 0; l < 16; ++l) residual[16 * i + l] = samples[16 * i + l] - sum[l % lanes];
+    for (std::size_t l = 0; l < 16; ++l)
+      residual[16 * i + l] = gains[i * lanes + l % lanes] * (samples[16 * i + l] - sum[l % lanes]);
   }
 }
 
@@ -42,7 +44,7 @@ COMPUEYE_STAGE void add_adjoint(const ThinStep<T>& step, const T* residual, T* v
     T sum[16];
     for (std::size_t l = 0; l < 16; ++l) sum[l] = v[first + l];
     for (std::size_t i = 0; i < step.rows; ++i) {
-      const T *row = step.synthesis + i * step.cols + first, *scale = residual + 16 * i;
+      const T *row = step.turned + i * step.cols + first, *scale = residual + 16 * i;
       for (std::size_t l = 0; l < 16; ++l) sum[l] += row[l] * scale[l];
     }
     for (std::size_t l = 0; l < 16; ++l) v[first + l] = sum[l];

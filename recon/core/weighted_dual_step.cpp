@@ -46,13 +46,13 @@ void WeightedDualStep<T>::apply(const T* x, T* u) noexcept {
     residual_[i] = is_missing(i) ? T(0) : residual_[i] + (u[i] / samples_.weights()[i] - u[i]);
   }
   flush_tiny(residual_, rows);
-  core::apply(problem_->dual_step, residual_, step_, scratch_);
+  core::apply(problem_->dual_step, level_, residual_, step_, scratch_);
   if (reweighted_.count() > 0) {
     for (std::size_t s = 0; s < reweighted_.count(); ++s) {
       reweighted_.values()[s] = static_cast<double>(step_[reweighted_.rows()[s]]);
     }
     reweighted_.replace(residual_);
-    core::apply(problem_->dual_step, residual_, step_, scratch_);
+    core::apply(problem_->dual_step, level_, residual_, step_, scratch_);
   }
   for (std::size_t i = 0; i < rows; ++i) u[i] -= problem_->relaxation * step_[i];
   for (std::size_t s = 0; s < reweighted_.count(); ++s) {
@@ -68,7 +68,7 @@ bool WeightedDualStep<T>::is_missing(std::size_t row) const noexcept {
 
 template <class T>
 double WeightedDualStep<T>::squared_size(const T* r) noexcept {
-  core::apply(problem_->dual_step, r, step_, scratch_);
+  core::apply(problem_->dual_step, 0, r, step_, scratch_);
   return static_cast<double>(dot(r, step_, problem_->a.rows));
 }
 

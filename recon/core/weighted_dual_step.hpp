@@ -27,13 +27,18 @@ class WeightedDualStep {
   /// from one.
   [[nodiscard]] bool begin(const float* y, const float* weights) noexcept;
 
+  /// The level of tau that apply() uses from here on. Frames with a weight other than one stay at the first, for which
+  /// alone the identity above is set up.
+  void set_level(std::size_t level) noexcept { level_ = reweighted_.count() == 0 ? level : 0; }
+  [[nodiscard]] std::size_t level() const noexcept { return level_; }
+
   /// Moves u; `x` has a.cols values, u a.rows. u stays nought at missing channels.
   void apply(const T* x, T* u) noexcept;
 
   /// F_W (W^-1 u - (A x - y)) of the last apply(): how far u was off, before relaxation.
   [[nodiscard]] const T* last_step() const noexcept { return step_; }
 
-  /// r' F r, and F r is left in last_step().
+  /// r' F r at the first level, and F r is left in last_step().
   [[nodiscard]] double squared_size(const T* r) noexcept;
 
   [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return samples_; }
@@ -50,6 +55,7 @@ class WeightedDualStep {
   T* step_;
   ReweightedChannels<T> reweighted_;
   T* scratch_;
+  std::size_t level_ = 0;
 };
 
 extern template class WeightedDualStep<float>;

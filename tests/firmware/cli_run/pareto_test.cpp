@@ -2,6 +2,7 @@
 #include <signal.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -51,12 +52,13 @@ TEST_CASE("pareto measures curves that fall as theory says, a front, and files t
   const auto curve = curve_of(json, "admm", "identity");
   REQUIRE(curve.size() >= 4);
   CHECK(curve.count(200) == 1);  // the board's own
-  const Json* before = nullptr;
+  const Json *before = nullptr, &converged = curve.rbegin()->second;
   for (const auto& [iterations, point] : curve) {
     for (std::size_t level = 0; level < 3 && before != nullptr; ++level) {
       CAPTURE(iterations);
       CAPTURE(level);
-      CHECK(nmse_of(point, level) <= 1.05 * nmse_of(*before, level));
+      // A picture on the way may be nearer the truth than the minimum is; from there it can only get back.
+      CHECK(nmse_of(point, level) <= 1.05 * std::max(nmse_of(*before, level), nmse_of(converged, level)));
     }
     // From the first few iterations on; before them the constraint is what the picture lacks, not the objective.
     if (before != nullptr && iterations > 8) {
