@@ -33,7 +33,8 @@ struct Outcomes {
   std::vector<double> nmse, objective;
 };
 
-Outcomes solve_all(std::vector<recon::Reconstructor>& solvers, const std::vector<Sample>& samples, int iterations) {
+Outcomes solve_all(std::vector<recon::Reconstructor>& solvers, const std::vector<Sample>& samples, int iterations,
+                   Pictures pictures = Pictures::as_solved) {
   Outcomes outcomes;
   for (std::size_t s = 0; s < samples.size(); ++s) {
     recon::Reconstructor& solver = solvers[std::min(s, solvers.size() - 1)];
@@ -41,6 +42,9 @@ Outcomes solve_all(std::vector<recon::Reconstructor>& solvers, const std::vector
     const Workspace memory(solver.required_bytes());
     std::vector<float> x(samples[s].truth.size());
     const recon::FrameInfo info = solver.solve(samples[s].y, {}, memory.span(), x);
+    if (pictures == Pictures::cut_to_positive) {
+      for (float& value : x) value = std::max(value, 0.0F);
+    }
     outcomes.nmse.push_back(nmse(samples[s].truth, x));
     outcomes.objective.push_back(info.objective);
   }
@@ -123,10 +127,10 @@ hal::Result<std::vector<recon::Reconstructor>> make_solvers(const recon::Respons
 }
 
 std::vector<Reached> measure_at(std::vector<recon::Reconstructor>& solvers, const std::vector<Sample>& samples,
-                                const std::vector<int>& iterations) {
+                                const std::vector<int>& iterations, Pictures pictures) {
   std::vector<Reached> reached;
   for (const int k : iterations) {
-    const Outcomes outcomes = solve_all(solvers, samples, k);
+    const Outcomes outcomes = solve_all(solvers, samples, k, pictures);
     reached.push_back(summary(k, outcomes, outcomes));
   }
   return reached;

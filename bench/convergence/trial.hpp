@@ -53,9 +53,12 @@ struct Curve {
                                                                           const recon::Plan& plan,
                                                                           const std::vector<Sample>& samples);
 
+enum class Pictures { as_solved, cut_to_positive };
+
 /// Means over all scenes at these iterations; excess is left nought.
 [[nodiscard]] std::vector<Reached> measure_at(std::vector<recon::Reconstructor>& solvers,
-                                              const std::vector<Sample>& samples, const std::vector<int>& iterations);
+                                              const std::vector<Sample>& samples, const std::vector<int>& iterations,
+                                              Pictures pictures = Pictures::as_solved);
 
 /// Median time of one frame with the iterations that the solver has.
 [[nodiscard]] double frame_ms(const recon::Reconstructor& solver, const Sample& sample);
