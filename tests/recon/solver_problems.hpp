@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <numbers>
 #include <string>
@@ -51,7 +52,8 @@ inline recon::Response measured_eye(std::uint64_t seed) {
   return calib::plausible_response(eye, {10, 10, 8.0, 8.0, 30.0}, {}, seed).value();
 }
 
-/// Dense, sparse, wide, tall, duplicated rows, zero rows, zero columns, badly scaled rows, measured rows.
+/// Dense, sparse, wide, tall, duplicated rows, zero rows, zero columns, badly scaled rows, measured rows. Under a
+/// sanitizer, where a solution takes twenty times as long and its digits are not what is looked at, one of three.
 inline std::vector<SolverProblem> solver_problems() {
   Random random(71);
   std::vector<SolverProblem> all;
@@ -67,7 +69,20 @@ inline std::vector<SolverProblem> solver_problems() {
   all.push_back({"zero columns", without_columns(random_response(random, 14, 30, 0.7), 4), 5, 6});
   all.push_back({"scaled rows", with_rows(base, {0, 1, 2, 3, 4, 5}, {1, 10, 0.1, 3, 0.03, 1}), 5, 6});
   all.push_back({"measured rows", measured_eye(1), 10, 10});
+#if defined(COMPUEYE_SANITIZED)
+  return {all[0], all[5], all[8]};
+#else
   return all;
+#endif
+}
+
+/// How many of them there are, those named left out.
+inline int count_of_problems(const std::vector<std::string>& left_out = {}) {
+  int count = 0;
+  for (const SolverProblem& problem : solver_problems()) {
+    if (std::find(left_out.begin(), left_out.end(), problem.name) == left_out.end()) ++count;
+  }
+  return count;
 }
 
 }  // namespace compueye::tests

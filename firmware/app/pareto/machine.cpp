@@ -5,7 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <fstream>
-#include <iterator>
+#include <memory>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -36,8 +37,13 @@ std::string cpu_model() {
 /// Another build may be faster or slower, whatever its version says.
 std::string program_hash() {
   std::ifstream program("/proc/self/exe", std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(program), {}};
-  return bytes.empty() ? "unknown" : fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
+  if (!program || state == nullptr || XXH3_64bits_reset(state.get()) != XXH_OK) return "unknown";
+  std::vector<char> chunk(1 << 20);
+  while (program.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || program.gcount() > 0) {
+    XXH3_64bits_update(state.get(), chunk.data(), static_cast<std::size_t>(program.gcount()));
+  }
+  return fmt::format("{:016x}", XXH3_64bits_digest(state.get()));
 }
 
 }  // namespace
