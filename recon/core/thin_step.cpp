@@ -133,7 +133,7 @@ COMPUEYE_INLINE void apply_of(const ThinStep<T>& step, std::size_t level, const 
 
 /// The samples of each lane's class, step.lanes a row.
 template <class T>
-void sort_into_classes(const ThinStep<T>& step, const T* y, T* out) noexcept {
+COMPUEYE_STAGE void sort_into_classes(const ThinStep<T>& step, const T* y, T* out) noexcept {
   for (std::size_t i = 0; i < step.rows; ++i) {
     if (step.lanes == 1) {
       out[i] = y[i];
@@ -149,7 +149,7 @@ void sort_into_classes(const ThinStep<T>& step, const T* y, T* out) noexcept {
 }
 
 template <class T, std::size_t lanes>
-COMPUEYE_INLINE void rotate(const ThinStep<T>& step, const T* __restrict in, T* __restrict sum, T* __restrict out) {
+COMPUEYE_STAGE void rotate(const ThinStep<T>& step, const T* __restrict in, T* __restrict sum, T* __restrict out) {
   const std::size_t width = step.rows * lanes;
   for (std::size_t k = 0; k < width; ++k) sum[k] = T(0);
   for (std::size_t j = 0; j < step.rows; ++j) {
@@ -164,7 +164,7 @@ COMPUEYE_INLINE void rotate(const ThinStep<T>& step, const T* __restrict in, T* 
 }
 
 template <class T>
-COMPUEYE_INLINE void turn_of(const ThinStep<T>& step, const T* y, T* out, T* scratch) {
+COMPUEYE_STAGE void turn_of(const ThinStep<T>& step, const T* y, T* out, T* scratch) {
   sort_into_classes(step, y, scratch);
   T* sum = scratch + step.rows * step.lanes;
   if (step.lanes == 1) return rotate<T, 1>(step, scratch, sum, out);
