@@ -34,7 +34,8 @@ class ByteTransport {
   /// Writes all of `from` or fails.
   [[nodiscard]] virtual Result<void> write(std::span<const std::byte> from, std::int64_t deadline_ns) = 0;
 
-  /// One request on the control channel (USB EP0, HID feature report); returns the bytes received into `reply`.
+  /// One request on the control channel (USB EP0, HID feature report): towards the device when `reply` is empty, from
+  /// it otherwise; returns the bytes received into `reply`. Errors: timeout, disconnected, io (the device refused it).
   [[nodiscard]] virtual Result<std::size_t> control(std::uint8_t request, std::span<const std::byte> payload,
                                                     std::span<std::byte> reply, std::int64_t deadline_ns) = 0;
 };

@@ -1,0 +1,100 @@
+#include "drivers/protocol/emulated_transport.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "drivers/protocol/hid_control.hpp"
+
+namespace compueye::protocol {
+
+EmulatedTransport::EmulatedTransport(DeviceEmulator& device, hal::Clock& clock) : device_(device), clock_(clock) {
+  description_.bus = device.bus() == EmulatedBus::hid ? "emulator hid" : "emulator usb";
+  description_.serial = device.serial();
+  description_.max_packet = device.bus() == EmulatedBus::hid ? hid_report_bytes : 512;
+}
+
+hal::Result<void> EmulatedTransport::open() {
+  const std::int64_t now_ns = clock_.now_ns();
+  if (!device_.attached(now_ns)) {
+    return hal::fail(hal::ErrorCode::not_found, description_.bus, "no eye is plugged in; plug it in");
+  }
+  device_.reset_bus(now_ns);
+  attachment_ = device_.attachment(now_ns);
+  description_.serial = device_.serial();
+  return {};
+}
+
+tl::unexpected<hal::Error> EmulatedTransport::gone() const {
+  return hal::fail(hal::ErrorCode::disconnected, description_.serial, "the eye was unplugged; plug it in again");
+}
+
+hal::Result<void> EmulatedTransport::check_there() {
+  if (attachment_ == 0) {
+    return hal::fail(hal::ErrorCode::usage, description_.bus, "the transport is not open; call open() first");
+  }
+  const std::int64_t now_ns = clock_.now_ns();
+  if (!device_.attached(now_ns) || device_.attachment(now_ns) != attachment_) return gone();
+  return {};
+}
+
+hal::Result<std::size_t> EmulatedTransport::read(std::span<std::byte> into, std::int64_t deadline_ns) {
+  for (;;) {
+    if (auto there = check_there(); !there) return tl::unexpected(std::move(there.error()));
+    const std::int64_t now_ns = clock_.now_ns();
+    const DeviceEmulator::Transfer transfer = device_.read(now_ns, into);
+    if (transfer.outcome != DeviceEmulator::Outcome::nothing) return outcome(transfer, "the stream", deadline_ns);
+    if (now_ns >= deadline_ns) return hal::timed_out();
+    clock_.sleep_until_ns(std::min(device_.next_change_ns(now_ns).value_or(deadline_ns), deadline_ns));
+  }
+}
+
+hal::Result<void> EmulatedTransport::write(std::span<const std::byte> from, std::int64_t /*deadline_ns*/) {
+  return hal::fail(hal::ErrorCode::unsupported, description_.serial,
+                   "an eye takes no stream of bytes (" + std::to_string(from.size()) + " given); use control()");
+}
+
+hal::Result<std::size_t> EmulatedTransport::control(std::uint8_t request, std::span<const std::byte> payload,
+                                                    std::span<std::byte> reply, std::int64_t deadline_ns) {
+  if (auto there = check_there(); !there) return tl::unexpected(std::move(there.error()));
+  const std::int64_t answered_ns = clock_.now_ns() + control_ns;
+  clock_.sleep_until_ns(std::min(answered_ns, deadline_ns));
+  if (answered_ns > deadline_ns) return hal::timed_out();
+  if (auto there = check_there(); !there) return tl::unexpected(std::move(there.error()));
+  if (device_.bus() == EmulatedBus::hid) return feature_reports(request, payload, reply, deadline_ns);
+  return outcome(device_.control(clock_.now_ns(), request, payload, reply), "a request", deadline_ns);
+}
+
+hal::Result<std::size_t> EmulatedTransport::feature_reports(std::uint8_t request, std::span<const std::byte> payload,
+                                                            std::span<std::byte> reply, std::int64_t deadline_ns) {
+  const auto exchange = hid_exchange(request, payload, reply.size());
+  if (!exchange) return tl::unexpected(exchange.error());
+  if (exchange->has_set) {
+    const auto set = outcome(device_.set_feature(clock_.now_ns(), exchange->set), "a feature report", deadline_ns);
+    if (!set) return set;
+  }
+  if (!exchange->has_get) return std::size_t{0};
+  HidReportBytes report{};
+  const auto got = outcome(device_.get_feature(clock_.now_ns(), static_cast<std::uint8_t>(exchange->get), report),
+                           "a feature report", deadline_ns);
+  if (!got) return got;
+  return hid_reply(request, payload, std::span<const std::byte>(report).first(*got), reply);
+}
+
+hal::Result<std::size_t> EmulatedTransport::outcome(DeviceEmulator::Transfer transfer, const char* what,
+                                                    std::int64_t deadline_ns) {
+  switch (transfer.outcome) {
+    case DeviceEmulator::Outcome::done:
+      return transfer.bytes;
+    case DeviceEmulator::Outcome::nothing:
+      clock_.sleep_until_ns(deadline_ns);
+      return hal::timed_out();
+    case DeviceEmulator::Outcome::stalled:
+      return hal::fail(hal::ErrorCode::io, description_.serial,
+                       std::string("the device stalled ") + what + "; reset its pipes or open it again");
+    case DeviceEmulator::Outcome::gone:
+      break;
+  }
+  return gone();
+}
+
+}  // namespace compueye::protocol

@@ -1,0 +1,172 @@
+// The frames of protocol::DeviceEmulator.
+
+#include <algorithm>
+#include <string_view>
+
+#include "drivers/protocol/device_emulator.hpp"
+#include "drivers/protocol/packet_encoder.hpp"
+
+namespace compueye::protocol {
+namespace {
+
+constexpr std::string_view greeting = "streaming";
+
+}  // namespace
+
+void DeviceEmulator::expose(std::int64_t ready_ns) {
+  for (std::size_t k = 0; k < faults_.size(); ++k) {
+    if (faults_[k].begun || !faults_[k].fault.at_frame || *faults_[k].fault.at_frame > frame_) continue;
+    faults_[k].begun = true;
+    begin(faults_[k].fault, ready_ns);
+    // A device that has started anew exposes its frames at other times.
+    if (state_ != DeviceState::streaming || frame_ready_ns() != ready_ns) return;
+  }
+  const std::uint64_t frame = frame_++;
+  ++truth_.frames;
+  const bool forced = now_wrong_.frames_to_overrun > 0;
+  if (forced) --now_wrong_.frames_to_overrun;
+  if (forced || !frame_fits()) {
+    ++dropped_;
+    ++truth_.frames_overrun;
+    overrun_pending_ = true;
+    return;
+  }
+  const std::int64_t start_ns = exposure_start_ns(frame);
+  generator_(EmulatedExposure{frame, start_ns, configuration_.exposure_ns, levels_}, codes_);
+
+  if (settings_.bus == EmulatedBus::hid) {
+    unsigned flags = (stream_config_id_ & 0xFU) << hid_flag::config_tag_shift;
+    if (overrun_pending_) flags |= hid_flag::overrun;
+    if (dark(start_ns)) flags |= hid_flag::dark;
+    if (!clock_was_set_) flags |= hid_flag::time_ok;
+    send_hid(ready_ns, static_cast<std::uint8_t>(flags));
+  } else {
+    FrameHeader header;
+    header.version = descriptor_.version;
+    header.frame = static_cast<std::uint32_t>(frame);
+    header.t_ns = clock_ns(start_ns);
+    header.config_id = stream_config_id_;
+    header.illum = illum(start_ns);
+    header.temperature = 2500;
+    header.dropped = static_cast<std::uint16_t>(dropped_);
+    if (overrun_pending_) header.flags |= packet_flag::overrun;
+    if (dark(start_ns)) header.flags |= packet_flag::dark;
+    if (!clock_was_set_) header.flags |= packet_flag::time_ok;
+    send_usb(ready_ns, header);
+  }
+  overrun_pending_ = false;
+  clock_was_set_ = false;
+}
+
+void DeviceEmulator::send_usb(std::int64_t ready_ns, FrameHeader header) {
+  if (settings_.events) {
+    if (header.frame == 0) send_event(ready_ns, header, PacketType::log, std::as_bytes(std::span(greeting)));
+    std::byte event[EventPayload::bytes];
+    if (overrun_pending_) {
+      store(EventPayload{EventPayload::overrun_began, dropped_}, event);
+      send_event(ready_ns, header, PacketType::event, event);
+    }
+    if (settling_ && header.illum != illumination_changing) {
+      store(EventPayload{EventPayload::illumination_settled, header.illum}, event);
+      send_event(ready_ns, header, PacketType::event, event);
+    }
+    if (clock_was_set_) {
+      store(EventPayload{EventPayload::clock_set, 0}, event);
+      send_event(ready_ns, header, PacketType::event, event);
+    }
+  }
+  if (header.illum != illumination_changing) settling_ = false;
+  header.format = configuration_.format;
+  const auto full_scale = static_cast<std::int32_t>((1U << static_cast<unsigned>(descriptor_.bits)) - 1U);
+  const auto step = static_cast<std::size_t>(channels_in(header.format, descriptor_.most_payload));
+  const std::uint16_t flags = header.flags;
+  for (std::size_t first = 0; first < codes_.size(); first += step) {
+    const auto part = std::span<const std::int32_t>(codes_).subspan(first, std::min(step, codes_.size() - first));
+    header.flags = flags;
+    if (first == 0) header.flags |= packet_flag::sof;
+    if (first + part.size() == codes_.size()) header.flags |= packet_flag::eof;
+    if (std::find(part.begin(), part.end(), full_scale) != part.end()) header.flags |= packet_flag::sat;
+    header.first_ch = static_cast<std::uint16_t>(first);
+    header.seq = seq_++;
+    const std::size_t bytes = encode_data(header, part, descriptor_.bits, packet_);
+    give_to_link(ready_ns, std::span(packet_).first(bytes));
+  }
+}
+
+void DeviceEmulator::send_event(std::int64_t ready_ns, FrameHeader header, PacketType type,
+                                std::span<const std::byte> payload) {
+  header.type = type;
+  header.flags &= packet_flag::time_ok;
+  header.seq = seq_++;
+  const std::size_t bytes = encode_packet(header, payload, packet_);
+  give_to_link(ready_ns, std::span(packet_).first(bytes));
+}
+
+void DeviceEmulator::send_hid(std::int64_t ready_ns, std::uint8_t flags) {
+  HidReport report;
+  report.frame = static_cast<std::uint16_t>(frame_ - 1);
+  report.parts = static_cast<std::uint8_t>(hid_parts(descriptor_.channels));
+  const auto full_scale = static_cast<std::int32_t>((1U << static_cast<unsigned>(descriptor_.bits)) - 1U);
+  for (std::size_t first = 0; first < codes_.size(); first += hid_channels_per_report, ++report.part) {
+    const auto part = std::span<const std::int32_t>(codes_).subspan(
+        first, std::min<std::size_t>(hid_channels_per_report, codes_.size() - first));
+    report.flags = flags;
+    if (std::find(part.begin(), part.end(), full_scale) != part.end()) report.flags |= hid_flag::sat;
+    encode_hid_report(report, part, std::span(packet_).first<hid_report_bytes>());
+    ++seq_;
+    give_to_link(ready_ns, std::span(packet_).first(hid_report_bytes));
+  }
+}
+
+void DeviceEmulator::give_to_link(std::int64_t ready_ns, std::span<std::byte> packet) noexcept {
+  ++truth_.packets;
+  const double seconds = static_cast<double>(packet.size()) / settings_.link_bytes_per_s;
+  link_free_ns_ = std::max(link_free_ns_, ready_ns) + static_cast<std::int64_t>(seconds * 1e9);
+  if (now_wrong_.lost_packets > 0) {
+    --now_wrong_.lost_packets;
+    ++truth_.packets_lost;
+    return;
+  }
+  if (now_wrong_.bit_errors > 0) {
+    --now_wrong_.bit_errors;
+    ++truth_.packets_damaged;
+    const std::uint64_t bit = random_() % (8 * packet.size());
+    packet[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
+  }
+  if (now_wrong_.short_packets > 0) {
+    --now_wrong_.short_packets;
+    ++truth_.packets_damaged;
+    packet = packet.first(packet.size() / 2);
+  }
+  int copies = 1;
+  if (now_wrong_.duplicates > 0) {
+    --now_wrong_.duplicates;
+    copies = 2;
+  }
+  for (; copies > 0 && fifo_.fits(packet.size(), 1); --copies) fifo_.push(packet, link_free_ns_);
+}
+
+bool DeviceEmulator::frame_fits() const noexcept {
+  if (settings_.bus == EmulatedBus::hid) {
+    const auto parts = static_cast<std::size_t>(hid_parts(descriptor_.channels));
+    return fifo_.fits(parts * hid_report_bytes, parts);
+  }
+  const auto step = static_cast<std::size_t>(channels_in(configuration_.format, descriptor_.most_payload));
+  const std::size_t packets = (codes_.size() + step - 1) / step;
+  // Up to four log and event packets go with it.
+  constexpr std::size_t most_others = 4, other_bytes = least_packet_bytes + 16;
+  return fifo_.fits(packed_bytes(configuration_.format, codes_.size()) + packets * (least_packet_bytes + 2) +
+                        most_others * other_bytes,
+                    packets + most_others);
+}
+
+bool DeviceEmulator::dark(std::int64_t start_ns) const noexcept {
+  return !levels_.empty() && start_ns >= settled_ns_ &&
+         std::all_of(levels_.begin(), levels_.end(), [](std::uint16_t level) { return level == 0; });
+}
+
+std::uint8_t DeviceEmulator::illum(std::int64_t start_ns) const noexcept {
+  return start_ns >= settled_ns_ ? illumination_.tag : illumination_changing;
+}
+
+}  // namespace compueye::protocol
