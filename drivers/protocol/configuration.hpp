@@ -15,7 +15,8 @@ namespace compueye::protocol {
 struct Configuration {
   static constexpr std::size_t bytes = 16;
 
-  std::uint32_t config_id = 0;       ///< the host's choice, never 0, another one for every SET_CONFIG
+  std::uint32_t config_id =
+      0;  ///< the host's choice, never 0; begin at random and count, so that no earlier run had it
   std::uint32_t frame_rate_mhz = 0;  ///< frames a second times 1000
   std::uint32_t exposure_ns = 0;     ///< per frame, at most the frame period
   SampleFormat format = SampleFormat::u16;

@@ -216,9 +216,9 @@ hal::Result<DescriptorPrefix> load_descriptor_prefix(std::span<const std::byte> 
     return bad(place, "does not begin with CEYD: this is not a compound eye");
   }
   const std::size_t length = load_little<std::uint32_t>(first_bytes.data() + 4);
-  if (length < DeviceDescriptor::least_bytes || length > DeviceDescriptor::most_bytes) {
+  if (length < DescriptorPrefix::least_length || length > DeviceDescriptor::most_bytes) {
     return bad(place, "says that it is " + std::to_string(length) + " bytes long, expected " +
-                          std::to_string(DeviceDescriptor::least_bytes) + " to " +
+                          std::to_string(DescriptorPrefix::least_length) + " to " +
                           std::to_string(DeviceDescriptor::most_bytes));
   }
   return DescriptorPrefix{length, ProtocolVersion::from_byte(load_little<std::uint8_t>(first_bytes.data() + 8))};
@@ -228,7 +228,7 @@ hal::Result<DeviceDescriptor> parse_descriptor(std::span<const std::byte> bytes,
   const auto prefix = load_descriptor_prefix(bytes, place);
   if (!prefix) return tl::unexpected(prefix.error());
   if (auto version = check_version(prefix->version, place); !version) return tl::unexpected(std::move(version.error()));
-  if (prefix->length != bytes.size()) {
+  if (prefix->length != bytes.size() || bytes.size() < DeviceDescriptor::least_bytes) {
     return bad(place, "says that it is " + std::to_string(prefix->length) + " bytes long and has " +
                           std::to_string(bytes.size()));
   }

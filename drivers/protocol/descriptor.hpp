@@ -30,7 +30,7 @@ struct IlluminatorEntry {
 /// What a device says about itself: GET_DESC's answer (docs/protocol.md, "Descriptor").
 struct DeviceDescriptor {
   static constexpr std::size_t most_bytes = 1U << 20U;  ///< of the serialised form
-  static constexpr std::size_t least_bytes = 64;        ///< the least that can be whole
+  static constexpr std::size_t least_bytes = 60;        ///< one channel, texts of one character
   static constexpr std::size_t most_text = 64;          ///< characters of serial and firmware, at least 1 each
   static constexpr std::size_t most_illuminators = 255;
   static constexpr std::uint32_t most_offset_ns = 0x7FFFFFFF;
@@ -64,7 +64,8 @@ struct DeviceDescriptor {
 /// What the first 12 bytes of a descriptor say, in every version of the protocol.
 struct DescriptorPrefix {
   static constexpr std::size_t bytes = 12;
-  std::size_t length = 0;  ///< of the whole descriptor: least_bytes .. most_bytes
+  static constexpr std::size_t least_length = 16;
+  std::size_t length = 0;  ///< of the whole descriptor: least_length .. DeviceDescriptor::most_bytes
   ProtocolVersion version;
 };
 

@@ -54,6 +54,9 @@ std::string_view name(FaultKind kind) noexcept {
 
 hal::Result<DeviceEmulator> DeviceEmulator::create(EmulatorSettings settings, SampleGenerator generator,
                                                    std::int64_t now_ns) {
+  if (!generator) {
+    return hal::fail(hal::ErrorCode::usage, settings.descriptor.serial, "an emulated eye needs a generator of samples");
+  }
   auto bytes = serialise(settings.descriptor);
   if (!bytes) return tl::unexpected(std::move(bytes.error()));
   if (auto right = check_settings(settings); !right) return tl::unexpected(std::move(right.error()));

@@ -64,7 +64,8 @@ struct EmulatorTruth {
 /// Time must not go backwards between calls. One thread. Once streaming, reads allocate nothing (faults may).
 class DeviceEmulator {
  public:
-  /// Errors: those of check_descriptor(); out_of_range (FIFO smaller than a frame, an eye too large or deep for HID).
+  /// Errors: those of check_descriptor(); usage (no generator); out_of_range (FIFO smaller than a frame, an eye too
+  /// large or deep for HID).
   [[nodiscard]] static hal::Result<DeviceEmulator> create(EmulatorSettings settings, SampleGenerator generator,
                                                           std::int64_t now_ns = 0);
 

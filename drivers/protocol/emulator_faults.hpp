@@ -32,15 +32,16 @@ inline constexpr std::size_t fault_kind_count = 16;
 [[nodiscard]] std::string_view name(FaultKind kind) noexcept;
 
 /// One line of a script: a fault and when. `at_frame`: when the device exposes this frame of a stream (once); otherwise
-/// at emulator time `at_ns`.
+/// at emulator time `at_ns`. Write it with designated initialisers: {.kind = FaultKind::silence, .duration_ns =
+/// 5'000'000}.
 struct EmulatorFault {
   FaultKind kind = FaultKind::silence;
   std::int64_t at_ns = 0;
-  std::optional<std::uint64_t> at_frame;
+  std::optional<std::uint64_t> at_frame = std::nullopt;
   std::int64_t duration_ns = 0;
   std::uint64_t count = 1;
   std::int64_t value = 0;
-  std::string text;
+  std::string text = {};
 };
 
 }  // namespace compueye::protocol

@@ -19,19 +19,13 @@ void FrameAssembler::begin_stream(std::uint32_t config_id, std::int64_t period_n
   counters_.late_in_a_row = 0;
 }
 
-void FrameAssembler::lose(std::uint64_t frames, hal::DropReason reason) noexcept {
-  builder_.abandon(reason);
-  builder_.sequence().lose(frames, reason);
-}
-
 void FrameAssembler::flush() noexcept {
   builder_.release();
   if (builder_.is_open()) finish();
 }
 
 void FrameAssembler::finish() noexcept {
-  if (!builder_.whole()) ++counters_.incomplete_frames;
-  builder_.finish();
+  if (!builder_.finish()) ++counters_.incomplete_frames;
 }
 
 void FrameAssembler::push(const Packet& packet) noexcept {
@@ -46,25 +40,20 @@ void FrameAssembler::push(const Packet& packet) noexcept {
   }
   const std::int64_t device_frame = frames_.at(packet.header.frame);
   // What this packet tells about losses concerns the frames behind the open one.
-  if (builder_.is_open() && device_frame >= 0 &&
-      builder_.sequence().run_frame(static_cast<std::uint64_t>(device_frame)) > builder_.frame()) {
-    finish();
-  }
+  if (builder_.ends_open(device_frame)) finish();
   builder_.sequence().saw_packet(packet);
   push_data(packet, device_frame);
 }
 
 void FrameAssembler::push_data(const Packet& packet, std::int64_t device_frame) noexcept {
   const FrameHeader& header = packet.header;
-  const std::uint64_t frame =
-      device_frame < 0 ? 0 : builder_.sequence().run_frame(static_cast<std::uint64_t>(device_frame));
-  if (device_frame < 0 || frame < (builder_.is_open() ? builder_.frame() : builder_.sequence().next_frame())) {
+  if (builder_.is_late(device_frame)) {
     ++counters_.late_parts;
     ++counters_.late_in_a_row;
     return;
   }
   if (header.first_ch + header.n_ch > static_cast<int>(builder_.channels())) return;  // a stream with other limits
-  if (!builder_.is_open()) builder_.open(frame);
+  if (!builder_.is_open()) builder_.open(device_frame);
   if (builder_.overlaps(header.first_ch, header.n_ch)) {
     ++counters_.duplicate_parts;
     return;

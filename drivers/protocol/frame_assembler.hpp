@@ -53,7 +53,7 @@ class FrameAssembler {
   /// Drops what is in hand as `reason`.
   void stop(hal::DropReason reason = hal::DropReason::stopped) noexcept { builder_.abandon(reason); }
   /// Counts frames that will never come, for example those of an outage; they have numbers.
-  void lose(std::uint64_t frames, hal::DropReason reason) noexcept;
+  void lose(std::uint64_t frames, hal::DropReason reason) noexcept { builder_.lose(frames, reason); }
 
   [[nodiscard]] const hal::FrameAccount& account() const noexcept { return builder_.sequence().account(); }
   [[nodiscard]] const AssemblerCounters& counters() const noexcept { return counters_; }

@@ -35,13 +35,22 @@ void FrameBuilder::release() noexcept {
   }
 }
 
-void FrameBuilder::open(std::uint64_t run_frame) noexcept {
+bool FrameBuilder::ends_open(std::int64_t device_frame) const noexcept {
+  return open_ && device_frame >= 0 && sequence_.run_frame(static_cast<std::uint64_t>(device_frame)) > frame();
+}
+
+bool FrameBuilder::is_late(std::int64_t device_frame) const noexcept {
+  if (device_frame < 0) return true;
+  return sequence_.run_frame(static_cast<std::uint64_t>(device_frame)) < (open_ ? frame() : sequence_.next_frame());
+}
+
+void FrameBuilder::open(std::int64_t device_frame) noexcept {
   Slot& slot = slots_[current_];
   std::memset(slot.valid.data(), 0, channels_);
   std::memset(come_.data(), 0, channels_);
   slot.come = 0;
   slot.block = {};
-  slot.block.frame = run_frame;
+  slot.block.frame = sequence_.run_frame(static_cast<std::uint64_t>(device_frame));
   slot.block.bits = bits_;
   slot.conditions = {};
   open_ = true;
@@ -58,7 +67,7 @@ FrameBuilder::Part FrameBuilder::take_part(std::size_t first, std::size_t count)
   return {std::span(slot.codes).subspan(first, count), std::span(slot.valid).subspan(first, count)};
 }
 
-void FrameBuilder::finish() noexcept {
+bool FrameBuilder::finish() noexcept {
   Slot& slot = slots_[current_];
   if (slot.come < channels_) {
     for (std::size_t k = 0; k < channels_; ++k) {
@@ -77,6 +86,7 @@ void FrameBuilder::finish() noexcept {
   open_ = false;
   ++ready_;
   current_ ^= 1U;
+  return slot.come == channels_;
 }
 
 void FrameBuilder::abandon(hal::DropReason reason) noexcept {
@@ -84,6 +94,11 @@ void FrameBuilder::abandon(hal::DropReason reason) noexcept {
   if (!open_) return;
   sequence_.drop(sequence_.place(frame()), reason);
   open_ = false;
+}
+
+void FrameBuilder::lose(std::uint64_t frames, hal::DropReason reason) noexcept {
+  abandon(reason);
+  sequence_.lose(frames, reason);
 }
 
 std::optional<hal::SampleBlock> FrameBuilder::take() noexcept {

@@ -35,8 +35,13 @@ class FrameBuilder {
 
   [[nodiscard]] bool is_open() const noexcept { return open_; }
   [[nodiscard]] std::uint64_t frame() const noexcept { return slots_[current_].block.frame; }
-  /// Begins frame `run_frame` >= account().next_frame(); there is none open.
-  void open(std::uint64_t run_frame) noexcept;
+  // Frames of the device are counted from its START and unwrapped; a negative number is from before it.
+  /// Comes after the open frame, which therefore is over.
+  [[nodiscard]] bool ends_open(std::int64_t device_frame) const noexcept;
+  /// Has its fate already, or lies before the open frame.
+  [[nodiscard]] bool is_late(std::int64_t device_frame) const noexcept;
+  /// Begins a frame that is not late; there is none open.
+  void open(std::int64_t device_frame) noexcept;
   /// Whether any of these channels came already.
   [[nodiscard]] bool overlaps(std::size_t first, std::size_t count) const noexcept;
   /// Where a part's codes and their validity go; the range lies within the channels. Counts them as come.
@@ -50,10 +55,12 @@ class FrameBuilder {
   /// t_ns, config_id and flags of the open frame are written here.
   [[nodiscard]] hal::SampleBlock& block() noexcept { return slots_[current_].block; }
   [[nodiscard]] FrameConditions& conditions() noexcept { return slots_[current_].conditions; }
-  /// The open frame is over: channels that did not come are invalid. It waits for take().
-  void finish() noexcept;
+  /// The open frame is over: channels that did not come are invalid. It waits for take(). Returns whether it is whole.
+  bool finish() noexcept;
   /// The open frame and those waiting are dropped.
   void abandon(hal::DropReason reason) noexcept;
+  /// As abandon(), and so many frames more that will never come.
+  void lose(std::uint64_t frames, hal::DropReason reason) noexcept;
 
   /// The oldest finished frame. Frames lost before it are in the account when it is returned.
   [[nodiscard]] std::optional<hal::SampleBlock> take() noexcept;

@@ -40,19 +40,13 @@ void HidAssembler::set_time(const Status& status) noexcept {
   has_time_ = true;
 }
 
-void HidAssembler::lose(std::uint64_t frames, hal::DropReason reason) noexcept {
-  builder_.abandon(reason);
-  builder_.sequence().lose(frames, reason);
-}
-
 void HidAssembler::flush() noexcept {
   builder_.release();
   if (builder_.is_open()) finish();
 }
 
 void HidAssembler::finish() noexcept {
-  if (!builder_.whole()) ++counters_.incomplete_frames;
-  builder_.finish();
+  if (!builder_.finish()) ++counters_.incomplete_frames;
 }
 
 bool HidAssembler::usable(const ParsedHidReport& parsed) noexcept {
@@ -90,29 +84,25 @@ void HidAssembler::push(std::span<const std::byte> bytes) noexcept {
   const ParsedHidReport parsed = parse_hid_report(bytes);
   if (!usable(parsed)) return;
   const std::int64_t device_frame = frames_.at(parsed.report.frame);
-  if (builder_.is_open() && device_frame >= 0 &&
-      builder_.sequence().run_frame(static_cast<std::uint64_t>(device_frame)) > builder_.frame()) {
-    finish();
-  }
+  if (builder_.ends_open(device_frame)) finish();
   push_part(parsed.report, device_frame);
 }
 
 void HidAssembler::push_part(const HidReport& report, std::int64_t device_frame) noexcept {
-  SequenceAccount& sequence = builder_.sequence();
-  const std::uint64_t frame = device_frame < 0 ? 0 : sequence.run_frame(static_cast<std::uint64_t>(device_frame));
-  if (device_frame < 0 || frame < (builder_.is_open() ? builder_.frame() : sequence.next_frame())) {
+  if (builder_.is_late(device_frame)) {
     ++counters_.late_parts;
     ++counters_.late_in_a_row;
     return;
   }
   if (!builder_.is_open()) {
-    const std::uint64_t missing = frame - sequence.next_frame();
+    SequenceAccount& sequence = builder_.sequence();
+    const std::uint64_t missing = sequence.run_frame(static_cast<std::uint64_t>(device_frame)) - sequence.next_frame();
     if (report.has(hid_flag::overrun)) {
       sequence.saw_device_drops(missing);
     } else {
       sequence.saw_missing_packets(missing);
     }
-    builder_.open(frame);
+    builder_.open(device_frame);
   }
   const std::size_t first = std::size_t{report.part} * hid_channels_per_report;
   const std::size_t count = std::min<std::size_t>(hid_channels_per_report, builder_.channels() - first);

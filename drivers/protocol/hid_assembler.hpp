@@ -50,7 +50,7 @@ class HidAssembler {
   [[nodiscard]] std::optional<hal::SampleBlock> take() noexcept { return builder_.take(); }
   void flush() noexcept;
   void stop(hal::DropReason reason = hal::DropReason::stopped) noexcept { builder_.abandon(reason); }
-  void lose(std::uint64_t frames, hal::DropReason reason) noexcept;
+  void lose(std::uint64_t frames, hal::DropReason reason) noexcept { builder_.lose(frames, reason); }
 
   [[nodiscard]] const hal::FrameAccount& account() const noexcept { return builder_.sequence().account(); }
   [[nodiscard]] const HidCounters& counters() const noexcept { return counters_; }

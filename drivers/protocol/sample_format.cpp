@@ -23,26 +23,35 @@ std::uint32_t unpack_u16(const std::byte* in, std::int32_t* out, std::size_t cou
   return seen;
 }
 
+/// Two codes of 12 bits at the low end of `bits`, as two of 32.
+std::uint64_t spread_pair(std::uint64_t bits) noexcept {
+  return (bits & 0xFFFU) | (bits << 20U & 0xFFF00000000U);
+}
+
 std::uint32_t unpack_u12(const std::byte* in, std::int32_t* out, std::size_t count) noexcept {
-  std::uint32_t seen = 0;
-  const auto put = [&](std::size_t k, std::uint32_t code) {
-    seen |= code;
-    out[k] = static_cast<std::int32_t>(code);
+  std::uint64_t seen = 0;
+  const auto put = [&](std::size_t k, std::uint64_t pair) {
+    seen |= pair;
+    // One store of both: the loop is bound by its stores.
+    if constexpr (std::endian::native == std::endian::big) pair = std::rotl(pair, 32);
+    std::memcpy(out + k, &pair, sizeof pair);
   };
   std::size_t k = 0;
   for (; k + 8 <= count; k += 8, in += 12) {
-    const auto low = load_little<std::uint64_t>(in);
-    const auto high = std::uint64_t{load_little<std::uint32_t>(in + 8)} << 4U | low >> 60U;
-    for (std::size_t i = 0; i < 5; ++i) put(k + i, static_cast<std::uint32_t>(low >> (12 * i) & 0xFFFU));
-    for (std::size_t i = 0; i < 3; ++i) put(k + 5 + i, static_cast<std::uint32_t>(high >> (12 * i) & 0xFFFU));
+    const auto first = load_little<std::uint64_t>(in), last = load_little<std::uint64_t>(in + 4);
+    put(k, spread_pair(first));
+    put(k + 2, spread_pair(first >> 24U));
+    put(k + 4, spread_pair(last >> 16U));
+    put(k + 6, spread_pair(last >> 40U));
   }
   for (; k + 2 <= count; k += 2, in += 3) {
-    const std::uint32_t pair = load_little<std::uint16_t>(in) | std::to_integer<std::uint32_t>(in[2]) << 16U;
-    put(k, pair & 0xFFFU);
-    put(k + 1, pair >> 12U);
+    put(k, spread_pair(load_little<std::uint16_t>(in) | std::to_integer<std::uint64_t>(in[2]) << 16U));
   }
-  if (k < count) put(k, load_little<std::uint16_t>(in) & 0xFFFU);
-  return seen;
+  if (k < count) {
+    out[k] = load_little<std::uint16_t>(in) & 0xFFF;
+    seen |= static_cast<std::uint32_t>(out[k]);
+  }
+  return static_cast<std::uint32_t>(seen | seen >> 32U);
 }
 
 std::uint32_t unpack_i24(const std::byte* in, std::int32_t* out, std::size_t count, std::int32_t middle) noexcept {
@@ -137,7 +146,7 @@ std::size_t packed_bytes(SampleFormat format, std::size_t count) noexcept {
 std::size_t unpack(SampleFormat format, std::span<const std::byte> packed, int bits, std::span<std::int32_t> codes,
                    std::span<std::uint8_t> valid) noexcept {
   const std::size_t count = codes.size();
-  if (count == 0 || packed.size() != packed_bytes(format, count) || valid.size() != count) return 0;
+  if (!known(format) || count == 0 || packed.size() != packed_bytes(format, count) || valid.size() != count) return 0;
   std::uint32_t seen = 0;
   switch (format) {
     case SampleFormat::u16:

@@ -1,0 +1,237 @@
+// docs/protocol.md says what the code does: its tables and examples are read out of the page itself.
+
+#include <doctest/doctest.h>
+
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+
+#include "drivers/protocol/cobs.hpp"
+#include "drivers/protocol/configuration.hpp"
+#include "drivers/protocol/crc32c.hpp"
+#include "drivers/protocol/hid_report.hpp"
+#include "drivers/protocol/illumination.hpp"
+#include "drivers/protocol/packet_stream.hpp"
+#include "drivers/protocol/requests.hpp"
+#include "drivers/protocol/status.hpp"
+#include "tests/drivers/protocol/wire_samples.hpp"
+
+using namespace compueye::protocol;
+using namespace compueye::protocol::tests;
+
+namespace {
+
+using Row = std::vector<std::string>;
+
+unsigned number_in(std::string text) {
+  const bool hex = text.starts_with("0x");
+  if (hex) text.erase(0, 2);
+  unsigned value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, hex ? 16 : 10);
+  CAPTURE(text);
+  REQUIRE(error == std::errc());
+  REQUIRE(end == text.data() + text.size());
+  return value;
+}
+
+/// "31 32", "32 times FF" or "(none)".
+std::vector<std::byte> bytes_in(const std::string& text) {
+  if (const auto times = text.find(" times "); times != std::string::npos) {
+    return std::vector<std::byte>(number_in(text.substr(0, times)), bytes_in(text.substr(times + 7)).at(0));
+  }
+  std::istringstream words(text);
+  std::vector<std::byte> bytes;
+  for (std::string word; words >> word && word != "(none)";) {
+    bytes.push_back(static_cast<std::byte>(number_in("0x" + word)));
+  }
+  return bytes;
+}
+
+class Page {
+ public:
+  Page() {
+    std::ifstream file(COMPUEYE_SOURCE_DIR "/docs/protocol.md");
+    REQUIRE(file);
+    std::string line, heading, block;
+    while (std::getline(file, line)) {
+      if (line.starts_with("```")) {
+        block = line.starts_with("```hex ") ? line.substr(7) : std::string();
+      } else if (!block.empty()) {
+        const auto more = bytes_in(line);
+        hex_[block].insert(hex_[block].end(), more.begin(), more.end());
+      } else if (line.starts_with("#")) {
+        heading = line.substr(line.find(' ') + 1);
+      } else if (line.starts_with("| ")) {
+        tables_[heading].push_back(cells(line));
+      }
+    }
+  }
+  [[nodiscard]] const std::vector<std::byte>& hex(const std::string& name) const {
+    CAPTURE(name);
+    REQUIRE(hex_.contains(name));
+    return hex_.at(name);
+  }
+  /// All rows below a heading, the titles of each table among them.
+  [[nodiscard]] const std::vector<Row>& rows(const std::string& heading) const {
+    CAPTURE(heading);
+    REQUIRE(tables_.contains(heading));
+    return tables_.at(heading);
+  }
+  /// The table of bytes below a heading leaves no byte out; its length.
+  [[nodiscard]] unsigned described_bytes(const std::string& heading) const {
+    unsigned next = 0;
+    bool in_table = false;
+    for (const Row& row : rows(heading)) {
+      if (row[0] == "offset") {
+        in_table = true;
+      } else if (in_table && row[0].find_first_not_of("0123456789") == std::string::npos) {
+        CAPTURE(row[2]);
+        CHECK(number_in(row[0]) == next);
+        next += number_in(row[1]);
+      } else {
+        in_table = false;
+      }
+    }
+    return next;
+  }
+
+ private:
+  static Row cells(const std::string& line) {
+    Row row;
+    for (std::size_t at = 2; at < line.size();) {
+      const std::size_t end = line.find('|', at);
+      std::string cell = line.substr(at, end - at);
+      std::erase(cell, '`');
+      while (!cell.empty() && cell.back() == ' ') cell.pop_back();
+      row.push_back(cell);
+      at = end == std::string::npos ? line.size() : end + 2;
+    }
+    return row;
+  }
+
+  std::map<std::string, std::vector<std::byte>> hex_;
+  std::map<std::string, std::vector<Row>> tables_;
+};
+
+}  // namespace
+
+TEST_CASE("the specification's tables describe every byte") {
+  const Page page;
+  CHECK(page.described_bytes("Header: 40 bytes") == header_bytes);
+  CHECK(page.described_bytes("Descriptor") == 48);
+  CHECK(page.described_bytes("Configuration") == Configuration::bytes);
+  CHECK(page.described_bytes("Illumination") == Illumination::bytes);
+  CHECK(page.described_bytes("Status") == Status::bytes);
+  CHECK(page.described_bytes("Ping reply") == PingReply::bytes);
+  CHECK(page.described_bytes("HID") == hid_report_bytes);
+}
+
+TEST_CASE("the specification's numbers are those of the code") {
+  const Page page;
+  const std::map<std::string, unsigned> expected{{"SOF", packet_flag::sof},
+                                                 {"EOF", packet_flag::eof},
+                                                 {"OVERRUN", packet_flag::overrun},
+                                                 {"SAT", packet_flag::sat},
+                                                 {"DARK", packet_flag::dark},
+                                                 {"TIME_OK", packet_flag::time_ok},
+                                                 {"GET_DESC", number(Request::get_desc)},
+                                                 {"SET_CONFIG", number(Request::set_config)},
+                                                 {"GET_CONFIG", number(Request::get_config)},
+                                                 {"START", number(Request::start)},
+                                                 {"STOP", number(Request::stop)},
+                                                 {"RESET_PIPES", number(Request::reset_pipes)},
+                                                 {"SET_ILLUM", number(Request::set_illum)},
+                                                 {"STATUS", number(Request::status)},
+                                                 {"PING", number(Request::ping)}};
+  std::size_t found = 0;
+  for (const char* const heading : {"Header: 40 bytes", "Requests"}) {
+    for (const Row& row : page.rows(heading)) {
+      const auto entry = expected.find(row[0]);
+      if (entry == expected.end()) continue;
+      CAPTURE(row[0]);
+      CHECK(number_in(row[1]) == entry->second);
+      ++found;
+    }
+  }
+  CHECK(found == expected.size());
+}
+
+TEST_CASE("the specification's CRC vectors hold") {
+  const Page page;
+  std::size_t checked = 0;
+  for (const Row& row : page.rows("CRC-32C")) {
+    if (!row[1].starts_with("0x")) continue;
+    CAPTURE(row[0]);
+    CHECK(crc32c(bytes_in(row[0])) == number_in(row[1]));
+    ++checked;
+  }
+  CHECK(checked == 4);
+}
+
+TEST_CASE("the specification's packet decodes to what the page says, alone and through COBS") {
+  const Page page;
+  PacketStream stream({5, 8});
+  stream.feed(page.hex("packet"));
+  const auto packet = stream.next();
+  REQUIRE(packet);
+  FrameHeader h;
+  h.flags = packet_flag::sof | packet_flag::eof | packet_flag::sat | packet_flag::time_ok;
+  h.seq = 7;
+  h.frame = 3;
+  h.t_ns = 1234567890;
+  h.config_id = 42;
+  h.n_ch = 5;
+  h.format = SampleFormat::u12;
+  h.illum = 1;
+  h.temperature = 2537;
+  h.payload_bytes = 8;
+  CHECK(packet->header == h);
+  const std::vector<std::int32_t> codes{0, 1, 0x123, 0xABC, 0xFFF};
+  std::vector<std::int32_t> got(5);
+  std::vector<std::uint8_t> valid(5);
+  CHECK(unpack(h.format, packet->payload, 12, got, valid) == 5);
+  CHECK(got == codes);
+
+  std::vector<std::byte> encoded(200);
+  encoded.resize(encode_data(h, codes, 12, encoded));
+  CHECK(encoded == page.hex("packet"));
+  std::vector<std::byte> decoded(encoded.size());
+  CHECK(cobs_decode(page.hex("cobs"), decoded) == encoded.size());
+  CHECK(decoded == encoded);
+
+  const ParsedHidReport parsed = parse_hid_report(page.hex("hid"));
+  REQUIRE(parsed.fault == HidFault::none);
+  CHECK(parsed.report.frame == 3);
+  CHECK(parsed.report.parts == 1);
+  CHECK(parsed.report.config_tag() == 42 % 16);
+  CHECK((parsed.report.flags & 0xFU) == (hid_flag::sat | hid_flag::time_ok));
+  CHECK(unpack(SampleFormat::u12, parsed.report.payload.first(8), 12, got, valid) == 5);
+  CHECK(got == codes);
+}
+
+TEST_CASE("the specification's descriptor and configuration are what the page says") {
+  const Page page;
+  DeviceDescriptor d;
+  d.serial = "CE-0001";
+  d.firmware = "1.0.0";
+  d.channels = 3;
+  d.bits = 12;
+  d.formats = {SampleFormat::u16, SampleFormat::u12};
+  d.most_payload = 12800;
+  d.least_frame_rate_mhz = 1000;
+  d.most_frame_rate_mhz = 500'000;
+  d.least_exposure_ns = 1000;
+  d.most_exposure_ns = 1'000'000'000;
+  d.ommatidium_of_channel = {2, 0, 1};
+  d.sample_offset_ns = {0, 250, 500};
+  d.illuminators = {{1, IlluminatorKind::lamp, 2, 1, 1, 2'000'000}};
+  const auto parsed = parse_descriptor(page.hex("descriptor"), "page");
+  REQUIRE(parsed);
+  CHECK(*parsed == d);
+  CHECK(serialise(d).value() == page.hex("descriptor"));
+  const Configuration c{42, 100'000, 1'000'000, SampleFormat::u12};
+  CHECK(check_echo(c, page.hex("configuration"), "page"));
+  CHECK(check_configuration(c, d));
+}
