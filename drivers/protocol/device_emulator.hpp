@@ -52,6 +52,7 @@ struct EmulatorSettings {
 struct EmulatorTruth {
   std::uint64_t frames = 0;           ///< exposed
   std::uint64_t frames_overrun = 0;   ///< of them dropped for want of memory
+  std::uint64_t frames_unasked = 0;   ///< of them in a stream that no host has started, after a reboot
   std::uint64_t packets = 0;          ///< or reports, given to the link
   std::uint64_t packets_lost = 0;     ///< by lose_packets
   std::uint64_t packets_damaged = 0;  ///< by bit_error and short_read

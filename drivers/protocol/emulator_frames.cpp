@@ -23,6 +23,7 @@ void DeviceEmulator::expose(std::int64_t ready_ns) {
   }
   const std::uint64_t frame = frame_++;
   ++truth_.frames;
+  if (stream_config_id_ == 0) ++truth_.frames_unasked;
   const bool forced = now_wrong_.frames_to_overrun > 0;
   if (forced) --now_wrong_.frames_to_overrun;
   if (forced || !frame_fits()) {

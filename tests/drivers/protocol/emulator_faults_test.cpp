@@ -229,6 +229,9 @@ TEST_CASE("fault reboot: state lost in mid-frame; one that streams unasked is no
       const std::uint64_t strange =
           eye.is_hid() ? eye.reports.counters().other_config : eye.packets.counters().other_config;
       CHECK((strange > 0) == (unasked == 1));
+      const EmulatorTruth& truth = eye.device.truth();
+      CHECK((truth.frames_unasked > 0) == (unasked == 1));
+      CHECK(truth.frames - truth.frames_unasked == 5);
       expect_recovery(eye);
     });
   }
