@@ -1,0 +1,216 @@
+// The set-up and recovery of device::DeviceSource.
+
+#include <algorithm>
+#include <utility>
+
+#include "drivers/device/device_source.hpp"
+#include "drivers/protocol/hid_report.hpp"
+
+namespace compueye::device {
+namespace {
+
+/// What a request that failed with `code` says about the device.
+Failure failure_of(Order order, hal::ErrorCode code) noexcept {
+  switch (code) {
+    case hal::ErrorCode::timeout:
+      return Failure::request_timeout;
+    case hal::ErrorCode::disconnected:
+      return Failure::unplugged;
+    case hal::ErrorCode::not_found:
+      return Failure::absent;
+    case hal::ErrorCode::unsupported:
+      return Failure::other_version;
+    case hal::ErrorCode::mismatch:
+      return order == Order::get_config ? Failure::wrong_echo : Failure::bad_reply;
+    case hal::ErrorCode::bad_format:
+    case hal::ErrorCode::out_of_range:
+      return Failure::bad_reply;
+    default:
+      return order == Order::open ? Failure::open_failed : Failure::request_refused;
+  }
+}
+
+bool is_away(Failure why) noexcept {
+  return why == Failure::unplugged || why == Failure::absent || why == Failure::open_failed ||
+         why == Failure::other_serial;
+}
+
+/// Everything that a run was told about the eye; its firmware's name may have changed.
+bool same_eye(const protocol::DeviceDescriptor& a, const protocol::DeviceDescriptor& b) {
+  return a.channels == b.channels && a.bits == b.bits && a.formats == b.formats && a.most_payload == b.most_payload &&
+         a.ommatidium_of_channel == b.ommatidium_of_channel && a.sample_offset_ns == b.sample_offset_ns;
+}
+
+std::string in_seconds(std::int64_t ns) {
+  std::string tenths = std::to_string(ns / 100'000'000);
+  if (tenths.size() < 2) tenths.insert(0, 1, '0');
+  return tenths.insert(tenths.size() - 1, 1, '.') + " s";
+}
+
+}  // namespace
+
+/// Carries out orders until the machine is in `state`.
+hal::Result<void> DeviceSource::get_to(MachineState state, std::int64_t limit_ns) {
+  machine_.begin(clock_.now_ns(), limit_ns);
+  for (;;) {
+    const Order order = machine_.next(clock_.now_ns());
+    if (machine_.state() == state) return {};
+    if (order == Order::none) break;
+    carry_out(order, clock_.now_ns() + protocol::control_deadline_ns);
+  }
+  hal::Error error = last_error_;
+  if (error.place.empty()) error.place = serial_.empty() ? transport_->describe().bus : serial_;
+  if (error.code == hal::ErrorCode::timeout && error.sentence.empty()) {
+    error.sentence = "the eye did not answer for " + in_seconds(limit_ns) + "; unplug it and plug it in again";
+  }
+  return tl::unexpected(std::move(error));
+}
+
+void DeviceSource::carry_out(Order order, std::int64_t until_ns) {
+  if (order == Order::pause) return clock_.sleep_until_ns(std::min(machine_.resume_ns(), until_ns));
+  blame_.reset();
+  auto done = attempt(order, until_ns);
+  if (order == Order::descriptor && done && pages_) return;  // the next page
+  if (done) return machine_.done(order, clock_.now_ns());
+  if (!requests_.cut_short()) {
+    const Failure why = blame_.value_or(failure_of(order, done.error().code));
+    return fail(why, std::move(done.error()));
+  }
+  if (order == Order::start) machine_.start_unsure();
+}
+
+hal::Result<void> DeviceSource::attempt(Order order, std::int64_t until_ns) {
+  switch (order) {
+    case Order::open:
+      return open();
+    case Order::reset_pipes:
+      pages_.reset();
+      return requests_.order(protocol::Request::reset_pipes, until_ns);
+    case Order::ping:
+      return requests_.ping(until_ns);
+    case Order::status:
+      return look_at_status(until_ns);
+    case Order::descriptor:
+      return fetch_descriptor(until_ns);
+    case Order::set_config:
+      next_config_id();
+      return requests_.set_configuration(configuration_, until_ns);
+    case Order::get_config:
+      return requests_.check_configuration(configuration_, serial_, until_ns);
+    case Order::start: {
+      auto started = requests_.order(protocol::Request::start, until_ns);
+      // One that timed out may have arrived.
+      if (started || started.error().code == hal::ErrorCode::timeout) begin_stream();
+      return started;
+    }
+    case Order::pause:
+    case Order::read:
+    case Order::none:
+      break;
+  }
+  return {};
+}
+
+hal::Result<void> DeviceSource::open() {
+  transport_->close();
+  if (auto opened = transport_->open(); !opened) return opened;
+  const std::string& found = transport_->describe().serial;
+  if (serial_.empty() || found.empty() || found == serial_) return {};
+  return other_eye(found);
+}
+
+tl::unexpected<hal::Error> DeviceSource::other_eye(const std::string& found) {
+  blame_ = Failure::other_serial;
+  return hal::fail(hal::ErrorCode::not_found, serial_,
+                   "another eye is plugged in, " + found + "; plug " + serial_ + " in");
+}
+
+/// What became of the stream before, and whether the device has started anew since the last look.
+hal::Result<void> DeviceSource::look_at_status(std::int64_t until_ns) {
+  const auto status = requests_.status(until_ns);
+  if (!status) return tl::unexpected(status.error());
+  if (extent_.is_open()) close_stream(extent_.close(*status, clock_.now_ns()), lost_as_);
+  if (has_status_ && status->boot_count != status_.boot_count) {
+    ++failures_[Failure::rebooted];
+    machine_.doubt_identity();
+  }
+  status_ = *status;
+  has_status_ = true;
+  return {};
+}
+
+hal::Result<void> DeviceSource::fetch_descriptor(std::int64_t until_ns) {
+  if (!pages_) {
+    pages_.emplace(settings_.bus == DeviceBus::hid ? protocol::hid_page_bytes : protocol::usb_page_bytes,
+                   transport_->describe().bus);
+  }
+  if (auto page = requests_.page(*pages_, until_ns); !page) return page;
+  if (!pages_->complete()) return {};
+  auto found = protocol::parse_descriptor(pages_->bytes(), transport_->describe().bus);
+  pages_.reset();
+  if (!found) return tl::unexpected(std::move(found.error()));
+  return judge(std::move(*found));
+}
+
+hal::Result<void> DeviceSource::judge(protocol::DeviceDescriptor found) {
+  if (!serial_.empty() && found.serial != serial_) return other_eye(found.serial);
+  if (descriptor_ && !same_eye(*descriptor_, found)) {
+    blame_ = Failure::other_descriptor;
+    return hal::fail(hal::ErrorCode::mismatch, serial_,
+                     "the eye came back with another descriptor: " + std::to_string(found.channels) + " channels of " +
+                         std::to_string(found.bits) + " bits, firmware " + found.firmware +
+                         "; start the program again to use it as it is now");
+  }
+  serial_ = found.serial;
+  if (!descriptor_) descriptor_ = std::move(found);
+  return {};
+}
+
+/// Never one whose tag in HID reports is that of an unconfigured device.
+void DeviceSource::next_config_id() noexcept {
+  ++configuration_.config_id;
+  if (configuration_.config_id % 16 == 0) ++configuration_.config_id;
+}
+
+void DeviceSource::begin_stream() noexcept {
+  const std::int64_t now_ns = clock_.now_ns();
+  extent_.begin(configuration_.config_id, status_, now_ns, configuration_.period_ns());
+  reader_->begin_stream(configuration_.config_id, configuration_.period_ns());
+  stream_base_ = reader_->account().produced;
+  stream_overruns_ = reader_->account().drops(hal::DropReason::device_overrun);
+  lost_as_ = hal::DropReason::transport_gap;
+  quiet_since_ns_.reset();
+  bytes_since_frame_ = 0;
+  ask_time_ns_ = now_ns;
+}
+
+void DeviceSource::fail(Failure why, hal::Error error) {
+  const std::int64_t now_ns = clock_.now_ns();
+  const bool was_open = machine_.is_open(), was_reading = machine_.state() == MachineState::read;
+  ++failures_[why];
+  last_error_ = std::move(error);
+  if (was_reading) ++failures_[Failure::restart];
+  if (why == Failure::unplugged) extent_.saw_gone(now_ns);
+  if (quiet_since_ns_) extent_.saw_quiet(*quiet_since_ns_);
+  pages_.reset();
+  machine_.failed(why, now_ns);
+  if (machine_.state() == MachineState::given_up) {
+    ++failures_[Failure::gave_up];
+    if (extent_.is_open()) close_stream(extent_.close(now_ns), lost_as_);
+  }
+  if (!was_open || machine_.is_open()) {
+    if (why == Failure::other_serial) transport_->close();
+    return;
+  }
+  transport_->close();
+  if (!is_away(why) && machine_.state() != MachineState::given_up) ++failures_[Failure::bus_reset];
+}
+
+hal::Error DeviceSource::given_up() const {
+  std::string why = last_error_.sentence.empty() ? "it does not answer" : last_error_.sentence;
+  return {hal::ErrorCode::disconnected, serial_,
+          "frames stopped, and recovery was given up after " + in_seconds(settings_.recovery_limit_ns) + ": " + why +
+              "; plug the eye in and start again"};
+}
+
+}  // namespace compueye::device

@@ -1,0 +1,205 @@
+// The frames of device::DeviceSource.
+
+#include "drivers/device/device_source.hpp"
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include "drivers/protocol/frame_header.hpp"
+#include "drivers/protocol/hid_report.hpp"
+#include "drivers/protocol/packet_encoder.hpp"
+
+namespace compueye::device {
+namespace {
+
+constexpr std::size_t least_chunk_bytes = 65536;
+constexpr BackOffSettings time_pauses{50'000'000, 10'000'000'000};
+
+/// What a frame takes on the wire.
+std::size_t frame_bytes(DeviceBus bus, const protocol::DeviceDescriptor& device, protocol::SampleFormat format) {
+  if (bus == DeviceBus::hid)
+    return static_cast<std::size_t>(protocol::hid_parts(device.channels)) * protocol::hid_report_bytes;
+  const int in_packet = std::max(protocol::channels_in(format, device.most_payload), 1);
+  const auto packets = static_cast<std::size_t>((device.channels - 1) / in_packet + 1);
+  return protocol::packed_bytes(format, static_cast<std::size_t>(device.channels)) +
+         packets * protocol::least_packet_bytes;
+}
+
+std::size_t chunk_bytes(DeviceBus bus, std::size_t max_packet) {
+  if (bus == DeviceBus::hid) return protocol::hid_report_bytes;
+  const std::size_t packet = std::clamp<std::size_t>(max_packet, 1, least_chunk_bytes);
+  return (least_chunk_bytes + packet - 1) / packet * packet;
+}
+
+std::uint32_t random_config_id() {
+  std::random_device device;
+  return static_cast<std::uint32_t>(device()) | 1U;
+}
+
+}  // namespace
+
+hal::Result<std::unique_ptr<DeviceSource>> DeviceSource::create(DeviceSettings settings,
+                                                                std::unique_ptr<hal::ByteTransport> transport,
+                                                                hal::Clock& clock) {
+  if (auto right = check_settings(settings); !right) return tl::unexpected(std::move(right.error()));
+  if (!transport) return hal::fail(hal::ErrorCode::usage, settings.serial, "an eye needs a transport to be read over");
+  std::unique_ptr<DeviceSource> source(new DeviceSource(std::move(settings), std::move(transport), clock));
+  auto identified = source->get_to(MachineState::configure, source->settings_.start_limit_ns);
+  if (!identified) return tl::unexpected(std::move(identified.error()));
+  const DeviceSettings& wanted = source->settings_;
+  const protocol::DeviceDescriptor& device = *source->descriptor_;
+  auto configuration = configuration_for(wanted, device);
+  if (!configuration) return tl::unexpected(std::move(configuration.error()));
+  configuration->config_id = wanted.first_config_id != 0 ? wanted.first_config_id - 1 : random_config_id();
+  source->configuration_ = *configuration;
+  source->description_ =
+      device.source_description(wanted.bus == DeviceBus::hid ? "hid" : "usb", configuration->frame_rate_mhz * 1e-3);
+  const std::int64_t usual_ns = std::max<std::int64_t>(5 * configuration->period_ns(), 50'000'000);
+  source->silence_ns_ = wanted.silence_ns != 0 ? wanted.silence_ns : usual_ns;
+  source->reader_ = make_stream_reader(wanted.bus, device);
+  source->chunk_.resize(chunk_bytes(wanted.bus, source->transport_->describe().max_packet));
+  const std::size_t frame = frame_bytes(wanted.bus, device, configuration->format);
+  source->babble_bytes_ = 4 * frame + 1024;
+  source->late_reads_ = static_cast<int>(frame / source->chunk_.size()) + 2;
+  return source;
+}
+
+DeviceSource::DeviceSource(DeviceSettings settings, std::unique_ptr<hal::ByteTransport> transport, hal::Clock& clock)
+    : settings_(std::move(settings)),
+      transport_(std::move(transport)),
+      clock_(clock),
+      requests_(*transport_, clock_),
+      machine_(settings_.back_off),
+      serial_(settings_.serial),
+      ask_time_pause_(time_pauses) {}
+
+DeviceSource::~DeviceSource() {
+  stop();
+  transport_->close();
+}
+
+hal::Result<void> DeviceSource::do_start() {
+  failures_ = {};
+  reader_->begin_run();
+  extent_ = {};
+  stream_base_ = stream_overruns_ = 0;
+  auto reached = get_to(MachineState::read, settings_.start_limit_ns);
+  machine_.run_with(settings_.recovery_limit_ns);
+  return reached;
+}
+
+hal::Result<hal::SampleBlock> DeviceSource::do_read(std::int64_t deadline_ns) {
+  int late_reads = 0;
+  for (;;) {
+    const std::int64_t now_ns = clock_.now_ns();
+    const Order order = machine_.next(now_ns);
+    if (order == Order::none) return tl::unexpected(given_up());
+    if (now_ns >= deadline_ns && (order != Order::read || late_reads++ >= late_reads_)) return hal::timed_out();
+    if (order != Order::read) {
+      carry_out(order, deadline_ns);
+      continue;
+    }
+    const std::size_t bytes_before = bytes_since_frame_;
+    if (const auto block = read_stream(deadline_ns)) return *block;
+    if (now_ns >= deadline_ns && bytes_since_frame_ == bytes_before) return hal::timed_out();
+  }
+}
+
+/// The frame at hand, or one look at the stream.
+std::optional<hal::SampleBlock> DeviceSource::read_stream(std::int64_t deadline_ns) {
+  if (const auto block = reader_->take()) {
+    saw_frame(*block);
+    return block;
+  }
+  if (quiet_for_too_long() && bytes_since_frame_ > babble_bytes_) {
+    lost_as_ = hal::DropReason::corrupt;
+    fail(Failure::babble, {hal::ErrorCode::bad_format, serial_, "it sends bytes that are no frames"});
+    return std::nullopt;
+  }
+  if (!quiet_since_ns_) quiet_since_ns_ = clock_.now_ns();
+  const std::int64_t silent_ns = *quiet_since_ns_ + silence_ns_;
+  const auto got = transport_->read(chunk_, std::min(deadline_ns, silent_ns));
+  if (got) {
+    take_bytes(*got, deadline_ns);
+  } else if (got.error().code == hal::ErrorCode::disconnected) {
+    fail(Failure::unplugged, got.error());
+  } else if (got.error().code != hal::ErrorCode::timeout) {
+    fail(Failure::stream_failed, got.error());
+  } else if (quiet_for_too_long()) {
+    fail(Failure::silence, {hal::ErrorCode::timeout, serial_, "no frames come"});
+  }
+  return std::nullopt;
+}
+
+void DeviceSource::saw_frame(const hal::SampleBlock& block) noexcept {
+  machine_.saw_frame();
+  extent_.saw_frame(block.frame - stream_base_, clock_.now_ns());
+  quiet_since_ns_.reset();
+  bytes_since_frame_ = 0;
+  if (!block.flags.time_ok) ++failures_[Failure::doubtful_time];
+}
+
+void DeviceSource::take_bytes(std::size_t bytes, std::int64_t deadline_ns) {
+  bytes_since_frame_ += bytes;
+  if (reader_->needs_time()) ask_time(deadline_ns);
+  reader_->push(std::span<const std::byte>(chunk_).first(std::min(bytes, chunk_.size())));
+}
+
+/// Frames without a time are better than none: a device that does not answer is asked ever less often.
+void DeviceSource::ask_time(std::int64_t deadline_ns) {
+  const std::int64_t now_ns = clock_.now_ns();
+  if (now_ns < ask_time_ns_ || now_ns >= deadline_ns) return;
+  const auto status = requests_.status(deadline_ns);
+  if (status) {
+    if (status->boot_count == status_.boot_count) reader_->set_time(*status);
+    ask_time_pause_.reset();
+    return;
+  }
+  if (requests_.cut_short()) return;
+  ++failures_[status.error().code == hal::ErrorCode::timeout ? Failure::request_timeout : Failure::request_refused];
+  ask_time_ns_ = clock_.now_ns() + ask_time_pause_.next_ns();
+}
+
+bool DeviceSource::quiet_for_too_long() const noexcept {
+  return quiet_since_ns_ && clock_.now_ns() - *quiet_since_ns_ >= silence_ns_;
+}
+
+void DeviceSource::do_stop() noexcept {
+  const bool reading = machine_.state() == MachineState::read;
+  const hal::DropReason reason = reading ? hal::DropReason::stopped : lost_as_;
+  if (machine_.is_open() && extent_.is_open()) {
+    const std::int64_t until_ns = clock_.now_ns() + 2 * protocol::control_deadline_ns;
+    if (requests_.order(protocol::Request::stop, until_ns)) {
+      if (const auto status = requests_.status(until_ns)) close_stream(extent_.close(*status, clock_.now_ns()), reason);
+    }
+  }
+  if (extent_.is_open()) {
+    close_stream(extent_.close(clock_.now_ns()), reason);
+  } else {
+    reader_->stop(reason);
+  }
+}
+
+/// Of the frames that the device made in a stream, those that did not come are dropped.
+void DeviceSource::close_stream(const StreamExtent::Frames& frames, hal::DropReason reason) noexcept {
+  reader_->stop(reason);
+  const std::uint64_t come = reader_->account().produced - stream_base_;
+  const std::uint64_t missing = frames.made > come ? frames.made - come : 0;
+  const std::uint64_t known = reader_->account().drops(hal::DropReason::device_overrun) - stream_overruns_;
+  const std::uint64_t overrun = std::min(missing, frames.overrun > known ? frames.overrun - known : 0);
+  reader_->lose(overrun, hal::DropReason::device_overrun);
+  reader_->lose(missing - overrun, reason);
+}
+
+hal::FrameAccount DeviceSource::do_account() const noexcept {
+  return reader_->account();
+}
+
+FailureCounters DeviceSource::failures() const noexcept {
+  FailureCounters failures = failures_;
+  reader_->add_failures(failures);
+  return failures;
+}
+
+}  // namespace compueye::device

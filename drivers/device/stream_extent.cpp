@@ -1,0 +1,47 @@
+#include "drivers/device/stream_extent.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace compueye::device {
+namespace {
+
+constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+
+/// STATUS counts modulo 2^32 and may be wrong: the number near `estimate`, or `estimate` when there is none near it.
+std::uint64_t near_estimate(std::uint32_t counted, std::uint64_t estimate) noexcept {
+  const auto ahead = static_cast<std::int32_t>(counted - static_cast<std::uint32_t>(estimate));
+  const auto most = static_cast<std::int64_t>(std::min<std::uint64_t>(estimate, 1U << 30U) + 1024);
+  if (ahead > most || -std::int64_t{ahead} > static_cast<std::int64_t>(estimate)) return estimate;
+  return estimate + static_cast<std::uint64_t>(std::int64_t{ahead});
+}
+
+}  // namespace
+
+void StreamExtent::begin(std::uint32_t config_id, const protocol::Status& before, std::int64_t start_ns,
+                         std::int64_t period_ns) noexcept {
+  open_ = true;
+  config_id_ = config_id;
+  before_ = before;
+  gone_ns_ = quiet_ns_ = never;
+  clock_.begin(start_ns, period_ns);
+}
+
+StreamExtent::Frames StreamExtent::close(const protocol::Status& status, std::int64_t now_ns) noexcept {
+  open_ = false;
+  if (status.boot_count != before_.boot_count) {
+    const auto up_ns = static_cast<std::int64_t>(std::min(status.now_ns, static_cast<std::uint64_t>(never)));
+    return {clock_.exposed_before(std::min(gone_ns_, now_ns - up_ns)), 0};
+  }
+  // The counters of the stream before: START did not arrive.
+  const bool untouched = status.frames == before_.frames && status.last_t_ns == before_.last_t_ns;
+  if (status.config_id != config_id_ || untouched) return {};
+  return {near_estimate(status.frames, clock_.exposed_before(now_ns)), status.overruns};
+}
+
+StreamExtent::Frames StreamExtent::close(std::int64_t now_ns) noexcept {
+  open_ = false;
+  return {clock_.exposed_before(std::min({gone_ns_, quiet_ns_, now_ns})), 0};
+}
+
+}  // namespace compueye::device

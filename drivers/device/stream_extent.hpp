@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "drivers/device/exposure_clock.hpp"
+#include "drivers/protocol/status.hpp"
+
+namespace compueye::device {
+
+/// How many frames the device made in one stream, from START to its end: what those that came are held against.
+///
+/// Asked after the stream has ended, a device that has not started anew knows (STATUS: `frames`, `overruns`). One that
+/// has, or that was plugged in again, has forgotten: the frames are then those that ExposureClock gives until it
+/// started anew (its clock is 0 there) or was seen to be gone, whichever was earlier. One that can no longer be asked
+/// is taken to have stopped when its stream did.
+class StreamExtent {
+ public:
+  struct Frames {
+    std::uint64_t made = 0;
+    std::uint64_t overrun = 0;  ///< of them, as far as the device told
+  };
+
+  /// START was sent; `before` is the last STATUS before it.
+  void begin(std::uint32_t config_id, const protocol::Status& before, std::int64_t start_ns,
+             std::int64_t period_ns) noexcept;
+  void saw_frame(std::uint64_t device_frame, std::int64_t now_ns) noexcept { clock_.saw_frame(device_frame, now_ns); }
+  /// The device was seen to be gone.
+  void saw_gone(std::int64_t t_ns) noexcept { gone_ns_ = std::min(gone_ns_, t_ns); }
+  /// No frame has come since `t_ns`, for whatever reason.
+  void saw_quiet(std::int64_t t_ns) noexcept { quiet_ns_ = std::min(quiet_ns_, t_ns); }
+  [[nodiscard]] bool is_open() const noexcept { return open_; }
+
+  /// Closes it with what the device says, asked at `now_ns`.
+  [[nodiscard]] Frames close(const protocol::Status& status, std::int64_t now_ns) noexcept;
+  /// Closes it without asking: as at `now_ns`, or when it was gone or quiet.
+  [[nodiscard]] Frames close(std::int64_t now_ns) noexcept;
+
+ private:
+  bool open_ = false;
+  std::uint32_t config_id_ = 0;
+  protocol::Status before_;
+  std::int64_t gone_ns_ = 0, quiet_ns_ = 0;
+  ExposureClock clock_;
+};
+
+}  // namespace compueye::device

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "drivers/device/failure_counters.hpp"
+#include "drivers/protocol/descriptor.hpp"
+#include "drivers/protocol/frame_builder.hpp"
+#include "drivers/protocol/status.hpp"
+#include "hal/accounting.hpp"
+#include "hal/sample_block.hpp"
+
+namespace compueye::device {
+
+enum class DeviceBus : std::uint8_t { usb, hid };
+
+/// Bytes of the stream in, whole frames out: what USB packets and HID reports have in common. Nothing allocates after
+/// construction.
+///
+///   reader.push(chunk);                          // which must live until take() has returned nothing
+///   while (const auto block = reader.take()) ...
+class StreamReader {
+ public:
+  StreamReader() = default;
+  StreamReader(const StreamReader&) = delete;
+  StreamReader& operator=(const StreamReader&) = delete;
+  virtual ~StreamReader() = default;
+
+  /// Frame numbers, account and failures restart at 0.
+  virtual void begin_run() noexcept = 0;
+  /// The device was started with configuration `config_id`; frame numbers go on.
+  virtual void begin_stream(std::uint32_t config_id, std::int64_t period_ns) noexcept = 0;
+  virtual void push(std::span<const std::byte> chunk) noexcept = 0;
+  /// The next frame; valid until the next call of anything.
+  [[nodiscard]] virtual std::optional<hal::SampleBlock> take() noexcept = 0;
+  /// Drops what is in hand as `reason`.
+  virtual void stop(hal::DropReason reason) noexcept = 0;
+  /// Counts frames that will never come.
+  virtual void lose(std::uint64_t frames, hal::DropReason reason) noexcept = 0;
+
+  /// Whether the times of frames need a STATUS of this stream, given to set_time().
+  [[nodiscard]] virtual bool needs_time() const noexcept { return false; }
+  virtual void set_time(const protocol::Status&) noexcept {}
+
+  [[nodiscard]] virtual const hal::FrameAccount& account() const noexcept = 0;
+  /// Adds what was wrong with bytes and frames since begin_run().
+  virtual void add_failures(FailureCounters& failures) const noexcept = 0;
+};
+
+[[nodiscard]] std::unique_ptr<StreamReader> make_stream_reader(DeviceBus bus,
+                                                               const protocol::DeviceDescriptor& descriptor);
+
+}  // namespace compueye::device

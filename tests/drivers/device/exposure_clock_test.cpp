@@ -1,0 +1,126 @@
+#include "drivers/device/exposure_clock.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "drivers/device/stream_extent.hpp"
+
+using namespace compueye;
+using namespace compueye::device;
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t hour = 3'600'000 * ms;
+
+}  // namespace
+
+TEST_CASE("frames are complete one period after the other, before a time and not at it") {
+  ExposureClock clock;
+  clock.begin(1000, 10);
+  CHECK(clock.exposed_before(0) == 0);
+  CHECK(clock.exposed_before(1000) == 0);
+  CHECK(clock.exposed_before(1010) == 0);
+  CHECK(clock.exposed_before(1011) == 1);
+  CHECK(clock.exposed_before(1100) == 9);
+  CHECK(clock.exposed_before(1101) == 10);
+}
+
+TEST_CASE("the estimate stays within a frame of the truth while the clocks drift apart and the reader dawdles") {
+  for (const double drift : {-300e-6, -20e-6, 0.0, 20e-6, 300e-6}) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      CAPTURE(drift);
+      CAPTURE(seed);
+      std::mt19937_64 random(seed);
+      const std::int64_t start_ns = 5 * ms, period_ns = 10 * ms, latency_ns = 2 * ms;
+      const double true_period_ns = static_cast<double>(period_ns) * (1.0 + drift);
+      const auto ready_ns = [&](std::uint64_t frame) {
+        return start_ns + static_cast<std::int64_t>(static_cast<double>(frame + 1) * true_period_ns);
+      };
+      ExposureClock clock;
+      clock.begin(start_ns, period_ns);
+      std::int64_t reader_ns = 0;
+      std::uint64_t worst = 0;
+      for (std::uint64_t frame = 0; ready_ns(frame) < hour; ++frame) {
+        const auto jitter_ns = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(2 * ms));
+        reader_ns = std::max(reader_ns, ready_ns(frame) + latency_ns + jitter_ns);
+        clock.saw_frame(frame, reader_ns);
+        if (random() % 1000 == 0) reader_ns += 200 * ms;
+        const std::uint64_t estimate = clock.exposed_before(ready_ns(frame) + 1);
+        if (frame > 500) worst = std::max(worst, std::max(estimate, frame + 1) - std::min(estimate, frame + 1));
+      }
+      CHECK(worst <= 1);
+    }
+  }
+}
+
+TEST_CASE("a frame number beyond all time does no harm") {
+  ExposureClock clock;
+  clock.begin(0, ms);
+  clock.saw_frame(~std::uint64_t{0}, 5 * ms);
+  clock.saw_frame(~std::uint64_t{0} / 4, 5 * ms);
+  CHECK(clock.exposed_before(10 * ms + 1) == 10);
+}
+
+TEST_CASE("the extent of a stream: asked, forgotten, unreachable, never begun") {
+  protocol::Status before;
+  before.boot_count = 3;
+  before.frames = 40;
+  before.last_t_ns = 12345;
+  const auto begun = [&] {
+    StreamExtent extent;
+    extent.begin(7, before, 1000 * ms, 10 * ms);
+    return extent;
+  };
+  protocol::Status after;
+  after.boot_count = 3;
+  after.config_id = 7;
+  after.frames = 25;
+  after.overruns = 2;
+  after.last_t_ns = 99999;
+
+  StreamExtent asked = begun();
+  CHECK(asked.is_open());
+  CHECK(asked.close(after, 1255 * ms).made == 25);
+  CHECK_FALSE(asked.is_open());
+  CHECK(begun().close(after, 1255 * ms).overrun == 2);
+
+  // START never arrived: the counters are those of the stream before.
+  protocol::Status untouched = before;
+  untouched.config_id = 7;
+  CHECK(begun().close(untouched, 1500 * ms).made == 0);
+  protocol::Status other = after;
+  other.config_id = 6;
+  CHECK(begun().close(other, 1500 * ms).made == 0);
+
+  // Started anew 100 ms ago; seen to be gone before that.
+  protocol::Status anew = after;
+  anew.boot_count = 4;
+  anew.now_ns = 100 * ms;
+  CHECK(begun().close(anew, 1255 * ms).made == 15);
+  StreamExtent gone = begun();
+  gone.saw_gone(1101 * ms);
+  gone.saw_gone(1201 * ms);
+  CHECK(gone.close(anew, 1255 * ms).made == 10);
+
+  StreamExtent quiet = begun();
+  quiet.saw_quiet(1051 * ms);
+  CHECK(quiet.close(2000 * ms).made == 5);
+  CHECK(begun().close(1255 * ms).made == 25);
+}
+
+TEST_CASE("a count that cannot be is not believed, one that went round is") {
+  protocol::Status before, after;
+  after.config_id = 1;
+  after.last_t_ns = 1;
+  StreamExtent extent;
+  extent.begin(1, before, 0, 1000);
+  after.frames = 0x7000'0000;
+  CHECK(extent.close(after, 10'000 * 1000 + 1).made == 10'000);
+  const std::int64_t frames = (std::int64_t{1} << 32) + 77;
+  extent.begin(1, before, 0, 1000);
+  after.frames = 75;
+  CHECK(extent.close(after, frames * 1000 + 1).made == static_cast<std::uint64_t>(frames) - 2);
+}

@@ -1,0 +1,154 @@
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "drivers/device/device_source.hpp"
+#include "drivers/protocol/emulated_transport.hpp"
+#include "hal/clock.hpp"
+#include "tests/drivers/protocol/emulated_eye.hpp"
+
+/// An emulated eye with a source on it, and what it truly made.
+namespace compueye::device::tests {
+
+using protocol::EmulatedBus;
+using protocol::EmulatorFault;
+using protocol::FaultKind;
+
+inline constexpr std::int64_t ms = 1'000'000;
+inline constexpr std::int64_t second = 1'000'000'000;
+
+/// Frames that the device made for its host: all but those that it streamed unasked.
+inline std::uint64_t frames_made(const protocol::EmulatorTruth& truth) {
+  return truth.frames - truth.frames_unasked;
+}
+
+/// Codes by the number that a frame has in the host's run. It is right only when the host accounted for every frame of
+/// every stream before: a frame too many or too few and all codes behind it are wrong.
+class RunGenerator {
+ public:
+  explicit RunGenerator(int bits) : bits_(bits) {}
+
+  [[nodiscard]] protocol::SampleGenerator generator() {
+    return [this](const protocol::EmulatedExposure&, std::span<std::int32_t> codes) {
+      const std::uint64_t made = device_ == nullptr ? 1 : frames_made(device_->truth());
+      for (std::size_t k = 0; k < codes.size(); ++k) codes[k] = protocol::tests::shown_code(made - 1 - base_, k, bits_);
+    };
+  }
+  void watch(const protocol::DeviceEmulator& device) { device_ = &device; }
+  /// The host begins a new run.
+  void begin_run() { base_ = frames_made(device_->truth()); }
+  [[nodiscard]] std::uint64_t made() const { return frames_made(device_->truth()) - base_; }
+
+ private:
+  int bits_;
+  const protocol::DeviceEmulator* device_ = nullptr;
+  std::uint64_t base_ = 0;
+};
+
+inline DeviceSettings source_settings(EmulatedBus bus) {
+  DeviceSettings settings;
+  settings.bus = bus == EmulatedBus::hid ? DeviceBus::hid : DeviceBus::usb;
+  settings.first_config_id = 1;
+  settings.exposure_ns = 1 * ms;
+  return settings;
+}
+
+/// A device, its transport and a source, in virtual time. Checks everything that must hold of every frame.
+class EyeRig {
+ public:
+  explicit EyeRig(const protocol::EmulatorSettings& emulator)
+      : EyeRig(emulator, source_settings(emulator.bus), std::make_unique<hal::VirtualClock>(10 * second)) {}
+  EyeRig(const protocol::EmulatorSettings& emulator, DeviceSettings settings)
+      : EyeRig(emulator, std::move(settings), std::make_unique<hal::VirtualClock>(10 * second)) {}
+  EyeRig(const protocol::EmulatorSettings& emulator, DeviceSettings settings, std::unique_ptr<hal::VirtualClock> time)
+      : own_clock_(std::move(time)),
+        clock(*own_clock_),
+        bits(emulator.descriptor.bits),
+        shown(bits),
+        device(protocol::DeviceEmulator::create(emulator, shown.generator(), clock.now_ns()).value()) {
+    shown.watch(device);
+    made_ =
+        DeviceSource::create(std::move(settings), std::make_unique<protocol::EmulatedTransport>(device, clock), clock);
+  }
+
+  /// Of create(): a test that expects it to fail looks at this.
+  [[nodiscard]] const hal::Result<std::unique_ptr<DeviceSource>>& made() const { return made_; }
+  [[nodiscard]] DeviceSource& source() {
+    REQUIRE(made_);
+    return **made_;
+  }
+
+  hal::Result<void> start() {
+    shown.begin_run();
+    next_frame_ = delivered_ = 0;
+    return source().start();
+  }
+
+  /// One read, with what must hold of it checked.
+  hal::Result<hal::SampleBlock> read(std::int64_t wait_ns = 100 * ms) {
+    const std::int64_t deadline_ns = clock.now_ns() + wait_ns;
+    auto block = source().read(deadline_ns);
+    REQUIRE(clock.now_ns() <= deadline_ns);
+    const hal::FrameAccount account = source().account();
+    REQUIRE(account.balanced());
+    if (!block) return block;
+    ++delivered_;
+    REQUIRE(account.delivered == delivered_);
+    REQUIRE(account.produced == block->frame + 1);
+    REQUIRE(block->frame >= next_frame_);  // no frame twice, none out of order
+    next_frame_ = block->frame + 1;
+    invalid_channels_ += check_codes(*block);
+    return block;
+  }
+
+  /// Reads until a frame comes.
+  hal::Result<hal::SampleBlock> next_frame(std::int64_t wait_ns = 60 * second) {
+    const std::int64_t until_ns = clock.now_ns() + wait_ns;
+    auto block = read();
+    while (!block && block.error().code == hal::ErrorCode::timeout && clock.now_ns() < until_ns) block = read();
+    return block;
+  }
+
+  void inject(EmulatorFault fault) {
+    if (!fault.at_frame && fault.at_ns == 0) fault.at_ns = clock.now_ns();
+    device.inject(std::move(fault));
+  }
+
+  [[nodiscard]] std::uint64_t delivered() const { return delivered_; }
+  [[nodiscard]] std::uint64_t invalid_channels() const { return invalid_channels_; }
+
+ private:
+  std::unique_ptr<hal::VirtualClock> own_clock_;
+
+  /// Every valid code is bit for bit what the eye showed in this frame.
+  std::uint64_t check_codes(const hal::SampleBlock& block) const {
+    std::uint64_t invalid = 0, wrong = 0;
+    for (std::size_t k = 0; k < block.codes.size(); ++k) {
+      invalid += block.valid[k] == 0 ? 1 : 0;
+      wrong += block.valid[k] != 0 && block.codes[k] != protocol::tests::shown_code(block.frame, k, bits) ? 1 : 0;
+    }
+    REQUIRE(wrong == 0);
+    return invalid;
+  }
+
+ public:
+  hal::VirtualClock& clock;
+  int bits;
+  RunGenerator shown;
+  protocol::DeviceEmulator device;
+
+ private:
+  hal::Result<std::unique_ptr<DeviceSource>> made_;
+  std::uint64_t next_frame_ = 0, delivered_ = 0, invalid_channels_ = 0;
+};
+
+}  // namespace compueye::device::tests
