@@ -88,29 +88,28 @@ void DeviceMachine::failed(Failure why, std::int64_t now_ns) noexcept {
     outage_ = true;
     outage_ns_ = now_ns;
   }
-  if (why == Failure::other_version || why == Failure::other_descriptor) return give_up();
-  if (why == Failure::wrong_echo) {
-    if (++wrong_echoes_ >= echo_tries || limit_ns_ == 0) return give_up();
+  if (why == Failure::wrong_echo && ++wrong_echoes_ < echo_tries && limit_ns_ > 0) {
     step_ = Order::set_config;
     return;
   }
-  const bool was_reading = state_ == MachineState::read;
   ++attempts_;
+  const bool was_reading = state_ == MachineState::read;
   const bool at_once = was_reading && attempts_ == 1;
-  if (now_ns - outage_ns_ >= limit_ns_ && (limit_ns_ == 0 || !at_once)) return give_up();
-  if (!at_once || why == Failure::unplugged) open_ = false;
+  const bool hopeless = why == Failure::other_version || why == Failure::other_descriptor || why == Failure::wrong_echo;
+  const bool too_long = limit_ns_ == 0 || (now_ns - outage_ns_ >= limit_ns_ && !at_once);
+  if (why == Failure::unplugged || !was_reading) open_ = false;
+  if (hopeless || too_long) {
+    state_ = MachineState::given_up;
+    return;
+  }
   if (at_once) {
     state_ = MachineState::reset;
     return;
   }
+  open_ = false;
   state_ = MachineState::wait;
   reset_after_pause_ = true;
   resume_ns_ = now_ns + back_off_.next_ns();
-}
-
-void DeviceMachine::give_up() noexcept {
-  state_ = MachineState::given_up;
-  open_ = false;
 }
 
 }  // namespace compueye::device

@@ -40,6 +40,7 @@ enum class Order : std::uint8_t {
 /// - The first attempt after a stream failed keeps the device open (RESET_PIPES); whatever fails then, and every
 /// request
 ///   that fails, has it closed and opened again, which resets the bus.
+/// - A device that is given up in READ is left open, so that it can be asked about its stream.
 /// - An outage lasts from the failure in READ to the next frame. It is given up when an attempt fails after
 ///   `limit_ns`; at once when that is 0. Another protocol version or another descriptor is given up at once, a wrong
 ///   echo when it came `echo_tries` times in a row.
@@ -57,10 +58,10 @@ class DeviceMachine {
   [[nodiscard]] Order next(std::int64_t now_ns) noexcept;
   void done(Order order, std::int64_t now_ns) noexcept;
   void failed(Failure why, std::int64_t now_ns) noexcept;
-  /// It is not known whether the device got START: to RESET without a pause.
-  void start_unsure() noexcept { state_ = MachineState::reset; }
   /// A frame came: the outage, if there was one, is over.
   void saw_frame() noexcept;
+  /// Given up, and the device is no longer needed.
+  void close() noexcept { open_ = false; }
   /// The descriptor has to be fetched again.
   void doubt_identity() noexcept { identified_ = false; }
 
@@ -70,8 +71,6 @@ class DeviceMachine {
   [[nodiscard]] bool is_open() const noexcept { return open_; }
 
  private:
-  void give_up() noexcept;
-
   BackOff back_off_;
   MachineState state_ = MachineState::reset;
   Order step_ = Order::status;  // of IDENTIFY and CONFIGURE

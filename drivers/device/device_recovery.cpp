@@ -69,14 +69,19 @@ hal::Result<void> DeviceSource::get_to(MachineState state, std::int64_t limit_ns
 void DeviceSource::carry_out(Order order, std::int64_t until_ns) {
   if (order == Order::pause) return clock_.sleep_until_ns(std::min(machine_.resume_ns(), until_ns));
   blame_.reset();
+  const std::int64_t began_ns = clock_.now_ns();
   auto done = attempt(order, until_ns);
   if (order == Order::descriptor && done && pages_) return;  // the next page
-  if (done) return machine_.done(order, clock_.now_ns());
-  if (!requests_.cut_short()) {
-    const Failure why = blame_.value_or(failure_of(order, done.error().code));
-    return fail(why, std::move(done.error()));
+  // Cut short by the reader, a request is made again; tries that together took a device's whole time are one that
+  // failed.
+  if (!done && requests_.cut_short() && order != Order::start) {
+    unanswered_ns_ += clock_.now_ns() - began_ns;
+    if (unanswered_ns_ < protocol::control_deadline_ns) return;
   }
-  if (order == Order::start) machine_.start_unsure();
+  unanswered_ns_ = 0;
+  if (done) return machine_.done(order, clock_.now_ns());
+  const Failure why = blame_.value_or(failure_of(order, done.error().code));
+  fail(why, std::move(done.error()));
 }
 
 hal::Result<void> DeviceSource::attempt(Order order, std::int64_t until_ns) {
@@ -133,6 +138,7 @@ hal::Result<void> DeviceSource::look_at_status(std::int64_t until_ns) {
   if (has_status_ && status->boot_count != status_.boot_count) {
     ++failures_[Failure::rebooted];
     machine_.doubt_identity();
+    clock_anew_ = true;
   }
   status_ = *status;
   has_status_ = true;
@@ -180,7 +186,8 @@ void DeviceSource::begin_stream() noexcept {
   stream_overruns_ = reader_->account().drops(hal::DropReason::device_overrun);
   lost_as_ = hal::DropReason::transport_gap;
   quiet_since_ns_.reset();
-  bytes_since_frame_ = 0;
+  bytes_since_frame_ = held_bytes_ = 0;
+  farewells_ = 0;
   ask_time_ns_ = now_ns;
 }
 
@@ -190,23 +197,25 @@ void DeviceSource::fail(Failure why, hal::Error error) {
   ++failures_[why];
   last_error_ = std::move(error);
   if (was_reading) ++failures_[Failure::restart];
-  if (why == Failure::unplugged) extent_.saw_gone(now_ns);
+  if (why == Failure::unplugged && was_reading) extent_.saw_gone(now_ns);
   if (quiet_since_ns_) extent_.saw_quiet(*quiet_since_ns_);
   pages_.reset();
   machine_.failed(why, now_ns);
   if (machine_.state() == MachineState::given_up) {
     ++failures_[Failure::gave_up];
-    if (extent_.is_open()) close_stream(extent_.close(now_ns), lost_as_);
+  } else if (was_open && !machine_.is_open() && !is_away(why)) {
+    ++failures_[Failure::bus_reset];
   }
-  if (!was_open || machine_.is_open()) {
-    if (why == Failure::other_serial) transport_->close();
-    return;
-  }
-  transport_->close();
-  if (!is_away(why) && machine_.state() != MachineState::given_up) ++failures_[Failure::bus_reset];
+  if (!machine_.is_open()) transport_->close();
 }
 
-hal::Error DeviceSource::given_up() const {
+/// `timeout` while the device, if it is still there, has yet to tell how many frames there were.
+hal::Error DeviceSource::given_up(std::int64_t deadline_ns) {
+  constexpr int most_farewells = 8;  // that are cut short
+  if (!end_stream(lost_as_, deadline_ns) && ++farewells_ < most_farewells) return {hal::ErrorCode::timeout, {}, {}};
+  if (extent_.is_open()) close_stream(extent_.close(clock_.now_ns()), lost_as_);
+  machine_.close();
+  transport_->close();
   std::string why = last_error_.sentence.empty() ? "it does not answer" : last_error_.sentence;
   return {hal::ErrorCode::disconnected, serial_,
           "frames stopped, and recovery was given up after " + in_seconds(settings_.recovery_limit_ns) + ": " + why +

@@ -83,6 +83,7 @@ hal::Result<void> DeviceSource::do_start() {
   failures_ = {};
   reader_->begin_run();
   extent_ = {};
+  clock_anew_ = false;
   stream_base_ = stream_overruns_ = 0;
   auto reached = get_to(MachineState::read, settings_.start_limit_ns);
   machine_.run_with(settings_.recovery_limit_ns);
@@ -94,7 +95,7 @@ hal::Result<hal::SampleBlock> DeviceSource::do_read(std::int64_t deadline_ns) {
   for (;;) {
     const std::int64_t now_ns = clock_.now_ns();
     const Order order = machine_.next(now_ns);
-    if (order == Order::none) return tl::unexpected(given_up());
+    if (order == Order::none) return tl::unexpected(given_up(deadline_ns));
     if (now_ns >= deadline_ns && (order != Order::read || late_reads++ >= late_reads_)) return hal::timed_out();
     if (order != Order::read) {
       carry_out(order, deadline_ns);
@@ -108,31 +109,48 @@ hal::Result<hal::SampleBlock> DeviceSource::do_read(std::int64_t deadline_ns) {
 
 /// The frame at hand, or one look at the stream.
 std::optional<hal::SampleBlock> DeviceSource::read_stream(std::int64_t deadline_ns) {
-  if (const auto block = reader_->take()) {
+  if (auto block = reader_->take()) {
     saw_frame(*block);
     return block;
   }
-  if (quiet_for_too_long() && bytes_since_frame_ > babble_bytes_) {
-    lost_as_ = hal::DropReason::corrupt;
-    fail(Failure::babble, {hal::ErrorCode::bad_format, serial_, "it sends bytes that are no frames"});
+  if (held_bytes_ > 0) {
+    hand_over(deadline_ns);
+    return std::nullopt;
+  }
+  if (bytes_since_frame_ > babble_bytes_ && quiet_for_too_long()) {
+    fail_quiet();
     return std::nullopt;
   }
   if (!quiet_since_ns_) quiet_since_ns_ = clock_.now_ns();
   const std::int64_t silent_ns = *quiet_since_ns_ + silence_ns_;
   const auto got = transport_->read(chunk_, std::min(deadline_ns, silent_ns));
   if (got) {
-    take_bytes(*got, deadline_ns);
+    held_bytes_ = std::min(*got, chunk_.size());
+    bytes_since_frame_ += held_bytes_;
+    times_held_ = 0;
+    hand_over(deadline_ns);
   } else if (got.error().code == hal::ErrorCode::disconnected) {
     fail(Failure::unplugged, got.error());
   } else if (got.error().code != hal::ErrorCode::timeout) {
     fail(Failure::stream_failed, got.error());
   } else if (quiet_for_too_long()) {
-    fail(Failure::silence, {hal::ErrorCode::timeout, serial_, "no frames come"});
+    fail_quiet();
   }
   return std::nullopt;
 }
 
-void DeviceSource::saw_frame(const hal::SampleBlock& block) noexcept {
+/// No frame for too long: with bytes that were none, or without.
+void DeviceSource::fail_quiet() {
+  if (bytes_since_frame_ > babble_bytes_) {
+    lost_as_ = hal::DropReason::corrupt;
+    fail(Failure::babble, {hal::ErrorCode::bad_format, serial_, "it sends bytes that are no frames"});
+  } else {
+    fail(Failure::silence, {hal::ErrorCode::timeout, serial_, "no frames come"});
+  }
+}
+
+void DeviceSource::saw_frame(hal::SampleBlock& block) noexcept {
+  if (std::exchange(clock_anew_, false)) block.flags.time_ok = false;
   machine_.saw_frame();
   extent_.saw_frame(block.frame - stream_base_, clock_.now_ns());
   quiet_since_ns_.reset();
@@ -140,25 +158,29 @@ void DeviceSource::saw_frame(const hal::SampleBlock& block) noexcept {
   if (!block.flags.time_ok) ++failures_[Failure::doubtful_time];
 }
 
-void DeviceSource::take_bytes(std::size_t bytes, std::int64_t deadline_ns) {
-  bytes_since_frame_ += bytes;
-  if (reader_->needs_time()) ask_time(deadline_ns);
-  reader_->push(std::span<const std::byte>(chunk_).first(std::min(bytes, chunk_.size())));
+/// Gives the chunk to the reader, once the time of its frame is known if it needs one.
+void DeviceSource::hand_over(std::int64_t deadline_ns) {
+  constexpr int most_times_held = 4;
+  if (reader_->needs_time() && !ask_time(deadline_ns) && ++times_held_ < most_times_held) return;
+  reader_->push(std::span<const std::byte>(chunk_).first(std::exchange(held_bytes_, 0)));
 }
 
-/// Frames without a time are better than none: a device that does not answer is asked ever less often.
-void DeviceSource::ask_time(std::int64_t deadline_ns) {
+/// False when the deadline came first. Frames without a time are better than none: a device that does not answer is
+/// asked ever less often.
+bool DeviceSource::ask_time(std::int64_t deadline_ns) {
   const std::int64_t now_ns = clock_.now_ns();
-  if (now_ns < ask_time_ns_ || now_ns >= deadline_ns) return;
+  if (now_ns < ask_time_ns_) return true;
+  if (now_ns >= deadline_ns) return false;
   const auto status = requests_.status(deadline_ns);
   if (status) {
     if (status->boot_count == status_.boot_count) reader_->set_time(*status);
     ask_time_pause_.reset();
-    return;
+    return true;
   }
-  if (requests_.cut_short()) return;
+  if (requests_.cut_short()) return false;
   ++failures_[status.error().code == hal::ErrorCode::timeout ? Failure::request_timeout : Failure::request_refused];
   ask_time_ns_ = clock_.now_ns() + ask_time_pause_.next_ns();
+  return true;
 }
 
 bool DeviceSource::quiet_for_too_long() const noexcept {
@@ -168,17 +190,25 @@ bool DeviceSource::quiet_for_too_long() const noexcept {
 void DeviceSource::do_stop() noexcept {
   const bool reading = machine_.state() == MachineState::read;
   const hal::DropReason reason = reading ? hal::DropReason::stopped : lost_as_;
-  if (machine_.is_open() && extent_.is_open()) {
-    const std::int64_t until_ns = clock_.now_ns() + 2 * protocol::control_deadline_ns;
-    if (requests_.order(protocol::Request::stop, until_ns)) {
-      if (const auto status = requests_.status(until_ns)) close_stream(extent_.close(*status, clock_.now_ns()), reason);
+  static_cast<void>(end_stream(reason, clock_.now_ns() + 2 * protocol::control_deadline_ns));
+  if (extent_.is_open()) close_stream(extent_.close(clock_.now_ns()), reason);
+}
+
+/// Stops the device and asks it how many frames there were. False: `until_ns` came before its answer.
+bool DeviceSource::end_stream(hal::DropReason reason, std::int64_t until_ns) {
+  if (!extent_.is_open()) return true;
+  if (machine_.is_open()) {
+    const bool stopped = requests_.order(protocol::Request::stop, until_ns).has_value();
+    if (!stopped && requests_.cut_short()) return false;
+    const auto status = requests_.status(until_ns);
+    if (!status && requests_.cut_short()) return false;
+    if (stopped && status) {
+      close_stream(extent_.close(*status, clock_.now_ns()), reason);
+      return true;
     }
   }
-  if (extent_.is_open()) {
-    close_stream(extent_.close(clock_.now_ns()), reason);
-  } else {
-    reader_->stop(reason);
-  }
+  close_stream(extent_.close(clock_.now_ns()), reason);
+  return true;
 }
 
 /// Of the frames that the device made in a stream, those that did not come are dropped.

@@ -69,10 +69,12 @@ class DeviceSource final : public hal::SampleSource {
   void do_stop() noexcept override;
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override;
   [[nodiscard]] std::optional<hal::SampleBlock> read_stream(std::int64_t deadline_ns);
-  void saw_frame(const hal::SampleBlock& block) noexcept;
-  void take_bytes(std::size_t bytes, std::int64_t deadline_ns);
-  void ask_time(std::int64_t deadline_ns);
+  void saw_frame(hal::SampleBlock& block) noexcept;
+  void fail_quiet();
+  void hand_over(std::int64_t deadline_ns);
+  [[nodiscard]] bool ask_time(std::int64_t deadline_ns);
   [[nodiscard]] bool quiet_for_too_long() const noexcept;
+  [[nodiscard]] bool end_stream(hal::DropReason reason, std::int64_t until_ns);
   void close_stream(const StreamExtent::Frames& frames, hal::DropReason reason) noexcept;
 
   // Set-up and recovery: device_recovery.cpp
@@ -87,7 +89,7 @@ class DeviceSource final : public hal::SampleSource {
   void next_config_id() noexcept;
   void begin_stream() noexcept;
   void fail(Failure why, hal::Error error);
-  [[nodiscard]] hal::Error given_up() const;
+  [[nodiscard]] hal::Error given_up(std::int64_t deadline_ns);
 
   DeviceSettings settings_;
   std::unique_ptr<hal::ByteTransport> transport_;
@@ -96,7 +98,8 @@ class DeviceSource final : public hal::SampleSource {
   DeviceMachine machine_;
   FailureCounters failures_;
   hal::Error last_error_;
-  std::optional<Failure> blame_;  // of the order that failed, where its error does not say
+  std::int64_t unanswered_ns_ = 0;  // what requests waited in vain that were cut short
+  std::optional<Failure> blame_;    // of the order that failed, where its error does not say
 
   std::optional<protocol::DeviceDescriptor> descriptor_;
   hal::SourceDescription description_;
@@ -105,6 +108,7 @@ class DeviceSource final : public hal::SampleSource {
   protocol::Configuration configuration_;
   protocol::Status status_;  // the last one that IDENTIFY got
   bool has_status_ = false;
+  bool clock_anew_ = false;  // the device's clock started anew since the last frame
 
   std::unique_ptr<StreamReader> reader_;
   std::vector<std::byte> chunk_;
@@ -117,6 +121,9 @@ class DeviceSource final : public hal::SampleSource {
   int late_reads_ = 1;                          // after the deadline, to put one frame together
   std::optional<std::int64_t> quiet_since_ns_;  // since when frames are waited for
   std::size_t bytes_since_frame_ = 0;
+  std::size_t held_bytes_ = 0;  // of the chunk, that the reader has yet to get
+  int times_held_ = 0;
+  int farewells_ = 0;             // tries to ask a device that was given up
   std::int64_t ask_time_ns_ = 0;  // not before
   BackOff ask_time_pause_;
 };

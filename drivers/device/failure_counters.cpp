@@ -4,11 +4,11 @@ namespace compueye::device {
 
 std::string_view name(Failure failure) noexcept {
   constexpr std::array<std::string_view, failure_count> names{
-      "unplugged",       "absent",    "open_failed",   "other_serial",     "rebooted",   "request_timeout",
-      "request_refused", "bad_reply", "other_version", "other_descriptor", "wrong_echo", "silence",
-      "stream_failed",   "babble",    "crc_error",     "garbage",          "cut_report", "missing_packet",
-      "repeated_part",   "late_part", "other_config",  "incomplete_frame", "bad_code",   "doubtful_time",
-      "restart",         "bus_reset", "gave_up"};
+      "unplugged",       "absent",        "open_failed",   "other_serial",     "rebooted",         "request_timeout",
+      "request_refused", "bad_reply",     "other_version", "other_descriptor", "wrong_echo",       "silence",
+      "stream_failed",   "babble",        "crc_error",     "garbage",          "resync",           "cut_report",
+      "missing_packet",  "repeated_part", "late_part",     "other_config",     "incomplete_frame", "bad_code",
+      "doubtful_time",   "restart",       "bus_reset",     "gave_up"};
   return names[static_cast<std::size_t>(failure)];
 }
 

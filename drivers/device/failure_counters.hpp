@@ -30,6 +30,7 @@ enum class Failure : std::uint8_t {
   // Its bytes
   crc_error,         ///< packets or reports whose CRC is wrong
   garbage,           ///< magic numbers before nonsense, reports of no known kind
+  resync,            ///< good packets found again after bytes that were none (USB)
   cut_report,        ///< reports of another length
   missing_packet,    ///< by the sequence numbers (USB)
   repeated_part,     ///< samples that had come already
@@ -43,7 +44,7 @@ enum class Failure : std::uint8_t {
   bus_reset,  ///< the device was closed and opened again
   gave_up,    ///< recovery was given up
 };
-inline constexpr std::size_t failure_count = 27;
+inline constexpr std::size_t failure_count = 28;
 
 [[nodiscard]] std::string_view name(Failure failure) noexcept;
 

@@ -41,7 +41,7 @@ StreamExtent::Frames StreamExtent::close(const protocol::Status& status, std::in
 
 StreamExtent::Frames StreamExtent::close(std::int64_t now_ns) noexcept {
   open_ = false;
-  return {clock_.exposed_before(std::min({gone_ns_, quiet_ns_, now_ns})), 0};
+  return {clock_.exposed_before(gone_ns_ != never ? gone_ns_ : std::min(quiet_ns_, now_ns)), 0};
 }
 
 }  // namespace compueye::device

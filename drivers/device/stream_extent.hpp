@@ -25,7 +25,7 @@ class StreamExtent {
   void begin(std::uint32_t config_id, const protocol::Status& before, std::int64_t start_ns,
              std::int64_t period_ns) noexcept;
   void saw_frame(std::uint64_t device_frame, std::int64_t now_ns) noexcept { clock_.saw_frame(device_frame, now_ns); }
-  /// The device was seen to be gone.
+  /// The device was seen to be gone while it streamed.
   void saw_gone(std::int64_t t_ns) noexcept { gone_ns_ = std::min(gone_ns_, t_ns); }
   /// No frame has come since `t_ns`, for whatever reason.
   void saw_quiet(std::int64_t t_ns) noexcept { quiet_ns_ = std::min(quiet_ns_, t_ns); }
@@ -33,7 +33,7 @@ class StreamExtent {
 
   /// Closes it with what the device says, asked at `now_ns`.
   [[nodiscard]] Frames close(const protocol::Status& status, std::int64_t now_ns) noexcept;
-  /// Closes it without asking: as at `now_ns`, or when it was gone or quiet.
+  /// Closes it without asking: with the time at which it was gone, else quiet, else `now_ns`.
   [[nodiscard]] Frames close(std::int64_t now_ns) noexcept;
 
  private:

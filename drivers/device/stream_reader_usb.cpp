@@ -29,6 +29,7 @@ void StreamReaderUsb::add_failures(FailureCounters& failures) const noexcept {
   const protocol::StreamCounters& stream = packets_.counters();
   failures[Failure::crc_error] += stream.crc_errors - before_run_.crc_errors;
   failures[Failure::garbage] += stream.bad_headers - before_run_.bad_headers;
+  failures[Failure::resync] += stream.resyncs - before_run_.resyncs;
   const protocol::AssemblerCounters& frames = frames_.counters();
   failures[Failure::missing_packet] += frames_.missing_packets();
   failures[Failure::repeated_part] += frames.duplicate_parts;

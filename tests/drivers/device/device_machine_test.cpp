@@ -88,7 +88,12 @@ TEST_CASE("an outage is given up after its limit and not before an attempt, at o
   at_once.failed(Failure::silence, 5);
   CHECK(at_once.state() == MachineState::given_up);
   CHECK(at_once.next(5) == Order::none);
+  CHECK(at_once.is_open());  // it may still be asked
+  at_once.close();
   CHECK_FALSE(at_once.is_open());
+  DeviceMachine gone = reading(0);
+  gone.failed(Failure::unplugged, 5);
+  CHECK_FALSE(gone.is_open());
 
   DeviceMachine patient = reading(3 * second);
   std::int64_t now_ns = 7 * second;

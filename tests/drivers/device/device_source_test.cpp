@@ -223,17 +223,30 @@ TEST_CASE("a reader that comes late loses frames to the device's memory, and onl
   }
 }
 
-TEST_CASE("a reader with deadlines shorter than a request recovers nothing but loses no account") {
+TEST_CASE("a reader with deadlines shorter than a request recovers nothing, but is told so and loses no account") {
   for (const EmulatedBus bus : both_buses) {
-    EyeRig rig(eye_settings(bus));
-    REQUIRE(rig.start());
-    for (int f = 0; f < 3; ++f) REQUIRE(rig.read());
-    rig.inject({.kind = FaultKind::stall_stream});
-    for (int k = 0; k < 2000; ++k) CHECK(rig.read(ms / 5).error().code == ErrorCode::timeout);
-    CHECK(rig.source().failures()[Failure::request_timeout] == 0);
-    REQUIRE(rig.next_frame());
-    rig.source().stop();
-    CHECK(rig.source().account().produced == rig.shown.made());
+    for (const std::int64_t wanted : {400 * ms, 40 * second}) {
+      EyeRig rig(eye_settings(bus));
+      REQUIRE(rig.start());
+      for (int f = 0; f < 3; ++f) REQUIRE(rig.read());
+      rig.inject({.kind = FaultKind::stall_stream});
+      const std::int64_t until_ns = rig.clock.now_ns() + wanted;
+      auto block = rig.read(ms / 5);
+      while (!block && block.error().code == ErrorCode::timeout && rig.clock.now_ns() < until_ns) {
+        block = rig.read(ms / 5);
+      }
+      REQUIRE_FALSE(block);
+      CHECK(rig.source().failures()[Failure::request_timeout] > 0);
+      if (wanted > second) {
+        CHECK(block.error().code == ErrorCode::disconnected);
+        CHECK(rig.clock.now_ns() <= until_ns);
+      } else {
+        REQUIRE(rig.next_frame());
+        rig.source().stop();
+        CHECK(rig.source().account().produced == rig.shown.made());
+      }
+      CHECK(rig.source().account().balanced());
+    }
   }
 }
 
