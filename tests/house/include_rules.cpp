@@ -64,7 +64,7 @@ constexpr std::array<FolderRule, 22> rules{{
     {"tools", none, none, false, none, false, "tools hold scripts; a program is a subcommand of compueye"},
 }};
 
-constexpr std::array<Library, 14> known_libraries{{
+constexpr std::array<Library, 15> known_libraries{{
     {"tl-expected", "tl/expected.hpp", "tl::expected"},
     {"Eigen", "Eigen/ unsupported/Eigen/", "Eigen3::Eigen"},
     {"Spectra", "Spectra/", "Spectra::Spectra"},
@@ -78,6 +78,7 @@ constexpr std::array<Library, 14> known_libraries{{
     {"sqlite", "sqlite3.h", "SQLite::SQLite3 PkgConfig::SQLITE3"},
     {"libusb", "libusb-1.0/ libusb.h", "PkgConfig::LIBUSB"},
     {"hidapi", "hidapi/ hidapi.h", "PkgConfig::HIDAPI"},
+    {"umockdev", "umockdev.h", "PkgConfig::UMOCKDEV"},
     {"libgpiod", "gpiod.h gpiod.hpp gpiodcxx/", "PkgConfig::GPIOD"},
 }};
 

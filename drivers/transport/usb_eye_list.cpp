@@ -1,0 +1,122 @@
+#include "drivers/transport/usb_eye_list.hpp"
+
+#include <libusb-1.0/libusb.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "drivers/transport/usb_error.hpp"
+
+namespace compueye::transport {
+namespace {
+
+struct CloseHandle {
+  void operator()(libusb_device_handle* handle) const noexcept { libusb_close(handle); }
+};
+using Handle = std::unique_ptr<libusb_device_handle, CloseHandle>;
+
+std::string bus_of(libusb_device* device) {
+  std::array<std::uint8_t, 8> ports{};
+  const int count = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
+  std::string bus = "usb " + std::to_string(libusb_get_bus_number(device));
+  for (int k = 0; k < count; ++k) bus += (k == 0 ? "-" : ".") + std::to_string(ports[static_cast<std::size_t>(k)]);
+  return bus;
+}
+
+std::string address_of(libusb_device* device) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%03u/%03u", static_cast<unsigned>(libusb_get_bus_number(device)),
+                static_cast<unsigned>(libusb_get_device_address(device)));
+  return text.data();
+}
+
+/// Empty when the device has none or does not answer; never longer than a string descriptor can be.
+std::string text_of(libusb_device_handle* handle, std::uint8_t index) {
+  if (index == 0) return {};
+  std::array<unsigned char, 256> text{};
+  const int bytes = libusb_get_string_descriptor_ascii(handle, index, text.data(), static_cast<int>(text.size()));
+  return bytes <= 0 ? std::string() : std::string(text.begin(), text.begin() + bytes);
+}
+
+/// Opens `device` and fills in what only an open device tells. An eye that cannot be opened has the reason.
+Handle look_at(libusb_device* device, const libusb_device_descriptor& descriptor, UsbEye& eye) {
+  eye.bus = bus_of(device);
+  eye.address = address_of(device);
+  libusb_device_handle* handle = nullptr;
+  if (const int code = libusb_open(device, &handle); code != LIBUSB_SUCCESS) {
+    eye.refusal = usb_error(code, eye.bus, "opening the eye (/dev/bus/usb/" + eye.address + ")");
+    return nullptr;
+  }
+  Handle opened(handle);
+  eye.serial = text_of(handle, descriptor.iSerialNumber);
+  eye.product = text_of(handle, descriptor.iProduct);
+  return opened;
+}
+
+/// Calls use(handle or null, eye) for every eye until it returns true.
+template <class Use>
+hal::Result<void> for_each_eye(libusb_context* context, protocol::UsbIdentity identity, Use&& use) {
+  libusb_device** devices = nullptr;
+  const auto count = libusb_get_device_list(context, &devices);
+  if (count < 0) return tl::unexpected(usb_error(static_cast<int>(count), "usb", "listing the devices"));
+  const std::unique_ptr<libusb_device*, void (*)(libusb_device**)> list(
+      devices, [](libusb_device** those) { libusb_free_device_list(those, 1); });
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+    libusb_device_descriptor descriptor{};
+    if (libusb_get_device_descriptor(devices[k], &descriptor) != LIBUSB_SUCCESS) continue;
+    if (descriptor.idVendor != identity.vendor || descriptor.idProduct != identity.product) continue;
+    UsbEye eye;
+    Handle handle = look_at(devices[k], descriptor, eye);
+    if (use(std::move(handle), std::move(eye))) break;
+  }
+  return {};
+}
+
+}  // namespace
+
+hal::Result<std::vector<UsbEye>> list_usb_eyes(protocol::UsbIdentity identity) {
+  libusb_context* made = nullptr;
+  if (const int code = libusb_init(&made); code != LIBUSB_SUCCESS) {
+    return tl::unexpected(usb_error(code, "usb", "starting libusb"));
+  }
+  const std::unique_ptr<libusb_context, void (*)(libusb_context*)> context(made, libusb_exit);
+  std::vector<UsbEye> eyes;
+  auto looked = for_each_eye(made, identity, [&](Handle, UsbEye eye) {
+    eyes.push_back(std::move(eye));
+    return false;
+  });
+  if (!looked) return tl::unexpected(std::move(looked.error()));
+  std::sort(eyes.begin(), eyes.end(), [](const UsbEye& a, const UsbEye& b) { return a.bus < b.bus; });
+  return eyes;
+}
+
+hal::Result<OpenedUsbEye> open_usb_eye(libusb_context* context, protocol::UsbIdentity identity,
+                                       const std::string& serial) {
+  OpenedUsbEye found;
+  hal::Error refusal;
+  std::string others;
+  auto looked = for_each_eye(context, identity, [&](Handle handle, UsbEye eye) {
+    if (!eye.reachable()) {
+      if (refusal.place.empty()) refusal = eye.refusal;
+      return false;
+    }
+    if (!serial.empty() && eye.serial != serial) {
+      others += (others.empty() ? "" : ", ") + eye.serial + " (" + eye.bus + ")";
+      return false;
+    }
+    found = {handle.release(), std::move(eye)};
+    return true;
+  });
+  if (!looked) return tl::unexpected(std::move(looked.error()));
+  if (found.handle != nullptr) return found;
+  // One of those that may not be opened could be the one asked for.
+  if (!refusal.place.empty()) return tl::unexpected(std::move(refusal));
+  const std::string wanted = serial.empty() ? "no eye" : "no eye with serial '" + serial + "'";
+  return hal::fail(hal::ErrorCode::not_found, serial.empty() ? "usb" : serial,
+                   wanted + " is on USB" + (others.empty() ? "" : "; there are " + others) + "; plug it in");
+}
+
+}  // namespace compueye::transport

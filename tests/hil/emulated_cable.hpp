@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "drivers/protocol/device_emulator.hpp"
+#include "hal/clock.hpp"
+#include "tests/drivers/protocol/small_host.hpp"
+#include "tests/hil/emulated_usbfs.hpp"
+
+namespace compueye::hil {
+
+/// The emulated eye in real time, for the threads of a test and of the operating system's side.
+class EmulatedCable {
+ public:
+  explicit EmulatedCable(const protocol::EmulatorSettings& settings)
+      : device_(protocol::DeviceEmulator::create(settings, protocol::tests::shown(settings.descriptor.bits),
+                                                 clock_.now_ns())
+                    .value()) {}
+
+  /// Calls use(device, now_ns) alone.
+  template <class Use>
+  auto with(Use&& use) {
+    const std::lock_guard lock(mutex_);
+    return use(device_, clock_.now_ns());
+  }
+  void inject(protocol::EmulatorFault fault) {
+    with([&](protocol::DeviceEmulator& device, std::int64_t now_ns) {
+      if (!fault.at_frame) fault.at_ns = now_ns;
+      device.inject(std::move(fault));
+      return device.attached(now_ns);  // so that it has happened
+    });
+  }
+  /// Takes the eye away and has it back at once, powered off and on: files opened before are dead. With another
+  /// `serial`, it is another eye.
+  void replace(const std::string& serial) {
+    const bool same = with([&](auto& device, auto) { return device.serial() == serial; });
+    inject({.kind = same ? protocol::FaultKind::unplug : protocol::FaultKind::replug_other,
+            .duration_ns = 1,
+            .text = serial});
+  }
+  [[nodiscard]] std::uint64_t attachment() {
+    return with([](auto& device, std::int64_t now_ns) { return device.attachment(now_ns); });
+  }
+  [[nodiscard]] std::string serial() {
+    return with([](auto& device, std::int64_t) { return device.serial(); });
+  }
+
+ private:
+  hal::MonotonicClock clock_;
+  std::mutex mutex_;
+  protocol::DeviceEmulator device_;
+};
+
+/// One plugging-in of the emulated eye as a USB device.
+class EmulatedUsbEye final : public UsbDeviceModel {
+ public:
+  explicit EmulatedUsbEye(EmulatedCable& cable) : cable_(cable), attachment_(cable.attachment()) {}
+
+  Transfer control(const Setup& setup, std::span<std::byte> data) override;
+  Transfer read(std::span<std::byte> into) override;
+  void reset() override;
+
+ private:
+  Transfer standard(const Setup& setup, std::span<std::byte> data);
+  template <class Use>
+  Transfer when_there(Use&& use);
+
+  EmulatedCable& cable_;
+  std::uint64_t attachment_;
+};
+
+/// Device, configuration, interface and endpoint descriptor as they lie in sysfs.
+[[nodiscard]] std::vector<std::uint8_t> usb_descriptors(std::uint16_t vendor, std::uint16_t product);
+
+}  // namespace compueye::hil

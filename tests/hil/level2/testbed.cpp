@@ -1,0 +1,134 @@
+#include "tests/hil/level2/testbed.hpp"
+
+#include <doctest/doctest.h>
+#include <umockdev.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
+
+#include "drivers/protocol/usb_identity.hpp"
+
+namespace compueye::hil {
+namespace {
+
+// The file is always "ready", so libusb asks again at once: so long an answer of "nothing yet" takes.
+constexpr auto reap_pause = std::chrono::microseconds(200);
+
+std::string hex_of(const std::vector<std::uint8_t>& bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", byte);
+    text += digits;
+  }
+  return text;
+}
+
+}  // namespace
+
+Testbed::Testbed() : testbed_(umockdev_testbed_new()) {}
+
+Testbed::~Testbed() {
+  g_object_unref(testbed_);
+}
+
+std::string Testbed::missing() {
+  // umockdev would stop the program; its own answer needs a testbed, and is remembered.
+  const char* preload = std::getenv("LD_PRELOAD");
+  const bool loaded = preload != nullptr && std::string_view(preload).find("umockdev") != std::string_view::npos;
+  return loaded ? "" : "umockdev is not preloaded; run this test with umockdev-wrapper";
+}
+
+void Testbed::add(const std::string& devices) {
+  GError* error = nullptr;
+  const bool added = umockdev_testbed_add_from_string(testbed_, devices.c_str(), &error);
+  INFO((error == nullptr ? "" : error->message));
+  REQUIRE(added);
+}
+
+void Testbed::remove(const std::string& sys_path) {
+  umockdev_testbed_uevent(testbed_, sys_path.c_str(), "remove");
+  umockdev_testbed_remove_device(testbed_, sys_path.c_str());
+}
+
+void Testbed::announce(const std::string& sys_path, const char* action) {
+  umockdev_testbed_uevent(testbed_, sys_path.c_str(), action);
+}
+
+/// One device file and what answers its ioctls.
+struct UsbPort::Plugged {
+  explicit Plugged(EmulatedCable& cable) : eye(cable), file(eye), handler(umockdev_ioctl_base_new()) {
+    g_signal_connect(handler, "handle-ioctl", G_CALLBACK(&Plugged::on_ioctl), this);
+  }
+  ~Plugged() { g_object_unref(handler); }
+
+  static gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer self) {
+    EmulatedUsbfs& file = static_cast<Plugged*>(self)->file;
+    const unsigned long request = umockdev_ioctl_client_get_request(client);
+    // Client and model share a process, so the pointer is ours too.
+    void* argument = *reinterpret_cast<void**>(umockdev_ioctl_client_get_arg(client)->data);
+    const EmulatedUsbfs::Answer answer = file.ioctl(request, argument);
+    if (request == USBDEVFS_REAPURBNDELAY && answer.result < 0) std::this_thread::sleep_for(reap_pause);
+    umockdev_ioctl_client_complete(client, answer.result, answer.error);
+    return TRUE;
+  }
+
+  EmulatedUsbEye eye;
+  EmulatedUsbfs file;
+  UMockdevIoctlBase* handler;
+};
+
+UsbPort::UsbPort(Testbed& testbed, const protocol::EmulatorSettings& eye, int port)
+    : cable(eye), testbed_(testbed), port_(port), address_(10 * port) {}
+
+UsbPort::~UsbPort() = default;
+
+std::string UsbPort::sys_path() const {
+  return "/sys/devices/pci0000:00/usb1/1-" + std::to_string(port_);
+}
+
+std::string UsbPort::device_file() const {
+  char text[32];
+  std::snprintf(text, sizeof text, "/dev/bus/usb/001/%03d", address_);
+  return text;
+}
+
+EmulatedUsbfs& UsbPort::file() {
+  REQUIRE_FALSE(all_.empty());
+  return all_.back()->file;
+}
+
+void UsbPort::plug() {
+  REQUIRE_FALSE(plugged_);
+  ++address_;
+  all_.push_back(std::make_unique<Plugged>(cable));
+  // First the handler: libusb may open the device as soon as it is announced.
+  GError* error = nullptr;
+  REQUIRE(umockdev_testbed_attach_ioctl(testbed_.get(), device_file().c_str(), all_.back()->handler, &error));
+  const std::string number = std::to_string(address_);
+  const protocol::UsbIdentity identity = protocol::usb_eye_identity;
+  testbed_.add("P: " + sys_path().substr(4) + "\nN: " + device_file().substr(5) +
+               "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM=0" + number +
+               "\nE: DEVNAME=" + device_file() + "\nE: MAJOR=189\nE: MINOR=" + std::to_string(address_ - 1) +
+               "\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=" + number +
+               "\\n\nA: speed=480\\n\nH: descriptors=" + hex_of(usb_descriptors(identity.vendor, identity.product)) +
+               "\n");
+  plugged_ = true;
+}
+
+void UsbPort::unplug(const std::string& next_serial) {
+  REQUIRE(plugged_);
+  cable.replace(next_serial);
+  testbed_.remove(sys_path());
+  plugged_ = false;
+}
+
+}  // namespace compueye::hil

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/hil/emulated_cable.hpp"
+
+// GLib's types, without its headers.
+extern "C" {
+typedef struct _UMockdevTestbed UMockdevTestbed;
+typedef struct _UMockdevIoctlBase UMockdevIoctlBase;
+typedef struct _UMockdevIoctlClient UMockdevIoctlClient;
+}
+
+namespace compueye::hil {
+
+/// umockdev's machine of this process: sysfs, udev and /dev as libusb and hidapi see them. Only under umockdev-wrapper.
+class Testbed {
+ public:
+  Testbed();
+  ~Testbed();
+  Testbed(const Testbed&) = delete;
+  Testbed& operator=(const Testbed&) = delete;
+
+  /// In umockdev's notation; announces what it adds.
+  void add(const std::string& devices);
+  void remove(const std::string& sys_path);
+  void announce(const std::string& sys_path, const char* action);
+  [[nodiscard]] UMockdevTestbed* get() const noexcept { return testbed_; }
+
+  /// Why umockdev cannot be used, empty when it can.
+  [[nodiscard]] static std::string missing();
+
+ private:
+  UMockdevTestbed* testbed_;
+};
+
+/// A USB port of the testbed with an emulated eye in it.
+class UsbPort {
+ public:
+  UsbPort(Testbed& testbed, const protocol::EmulatorSettings& eye, int port = 4);
+  ~UsbPort();
+
+  /// Plugs the eye in: a new device file.
+  void plug();
+  /// Takes it out; what plug() brings has this serial.
+  void unplug(const std::string& next_serial);
+  void unplug() { unplug(cable.serial()); }
+  /// Of the last plug().
+  [[nodiscard]] EmulatedUsbfs& file();
+  [[nodiscard]] std::string sys_path() const;
+  [[nodiscard]] std::string device_file() const;
+
+  EmulatedCable cable;
+
+ private:
+  struct Plugged;
+  Testbed& testbed_;
+  int port_;
+  int address_;
+  bool plugged_ = false;
+  std::vector<std::unique_ptr<Plugged>> all_;  // clients of earlier files may still call
+};
+
+}  // namespace compueye::hil

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "drivers/transport/usb_libusb.hpp"
+#include "hal/clock.hpp"
+#include "tests/drivers/protocol/wire_samples.hpp"
+#include "tests/hil/level2/testbed.hpp"
+
+namespace compueye::hil {
+
+/// An eye as the emulator shows it, with a link fast enough not to matter.
+inline protocol::EmulatorSettings eye(const std::string& serial, int channels = 64,
+                                      protocol::EmulatedBus bus = protocol::EmulatedBus::usb) {
+  protocol::EmulatorSettings settings;
+  settings.bus = bus;
+  settings.descriptor = protocol::tests::descriptor_of(channels, 12);
+  settings.descriptor.serial = serial;
+  settings.fifo_bytes = std::size_t{1} << 20U;
+  settings.boot_ns = 1'000'000;
+  return settings;
+}
+
+inline transport::UsbSettings with_serial(std::string serial) {
+  transport::UsbSettings settings;
+  settings.serial = std::move(serial);
+  return settings;
+}
+
+inline bool whole(const hal::SampleBlock& block) {
+  return std::all_of(block.valid.begin(), block.valid.end(), [](std::uint8_t valid) { return valid != 0; });
+}
+
+/// An eye in its port and the smallest host in front of the real libusb.
+struct UsbBench {
+  UsbBench(Testbed& testbed, const protocol::EmulatorSettings& settings, transport::UsbSettings usb = {})
+      : port(testbed, settings),
+        transport(std::move(usb)),
+        host(transport, clock, protocol::EmulatedBus::usb, settings.descriptor) {
+    port.plug();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // it boots
+  }
+  [[nodiscard]] std::int64_t in_ms(std::int64_t ms) const { return clock.now_ns() + ms * 1'000'000; }
+  /// The account closes: every frame number has one fate.
+  [[nodiscard]] hal::Result<std::size_t> read(std::int64_t within_ms) {
+    return transport.read(chunk, in_ms(within_ms));
+  }
+
+  UsbPort port;
+  hal::MonotonicClock clock;
+  transport::UsbTransport transport;
+  protocol::tests::SmallHost host;
+  std::array<std::byte, 16384> chunk{};
+};
+
+}  // namespace compueye::hil
+
+/// The testbed of a test case, or its end when umockdev cannot work here.
+#define HIL_TESTBED(name)                                                 \
+  if (const auto why = compueye::hil::Testbed::missing(); !why.empty()) { \
+    MESSAGE("SKIPPED: " << why);                                          \
+    return;                                                               \
+  }                                                                       \
+  compueye::hil::Testbed name
