@@ -22,6 +22,8 @@ namespace {
 // The file is always "ready", so libusb asks again at once: so long an answer of "nothing yet" takes.
 constexpr auto reap_pause = std::chrono::microseconds(200);
 
+}  // namespace
+
 std::string hex_of(const std::vector<std::uint8_t>& bytes) {
   std::string text;
   for (const std::uint8_t byte : bytes) {
@@ -31,8 +33,6 @@ std::string hex_of(const std::vector<std::uint8_t>& bytes) {
   }
   return text;
 }
-
-}  // namespace
 
 Testbed::Testbed() : testbed_(umockdev_testbed_new()) {}
 
@@ -87,7 +87,7 @@ struct UsbPort::Plugged {
 };
 
 UsbPort::UsbPort(Testbed& testbed, const protocol::EmulatorSettings& eye, int port)
-    : cable(eye), testbed_(testbed), port_(port), address_(10 * port) {}
+    : cable(eye), testbed_(testbed), port_(port) {}
 
 UsbPort::~UsbPort() = default;
 
@@ -108,7 +108,7 @@ EmulatedUsbfs& UsbPort::file() {
 
 void UsbPort::plug() {
   REQUIRE_FALSE(plugged_);
-  ++address_;
+  address_ = testbed_.new_number();
   all_.push_back(std::make_unique<Plugged>(cable));
   // First the handler: libusb may open the device as soon as it is announced.
   GError* error = nullptr;

@@ -27,6 +27,8 @@ class Testbed {
   void add(const std::string& devices);
   void remove(const std::string& sys_path);
   void announce(const std::string& sys_path, const char* action);
+  /// For a device file that no earlier device had: umockdev refuses a second handler for one.
+  [[nodiscard]] int new_number() noexcept { return ++last_number_; }
   [[nodiscard]] UMockdevTestbed* get() const noexcept { return testbed_; }
 
   /// Why umockdev cannot be used, empty when it can.
@@ -34,7 +36,11 @@ class Testbed {
 
  private:
   UMockdevTestbed* testbed_;
+  int last_number_ = 10;
 };
+
+/// Bytes as umockdev's "H:" attributes want them.
+[[nodiscard]] std::string hex_of(const std::vector<std::uint8_t>& bytes);
 
 /// A USB port of the testbed with an emulated eye in it.
 class UsbPort {
@@ -58,7 +64,7 @@ class UsbPort {
   struct Plugged;
   Testbed& testbed_;
   int port_;
-  int address_;
+  int address_ = 0;
   bool plugged_ = false;
   std::vector<std::unique_ptr<Plugged>> all_;  // clients of earlier files may still call
 };

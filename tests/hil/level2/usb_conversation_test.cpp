@@ -6,7 +6,7 @@
 
 #include "drivers/transport/usb_hotplug.hpp"
 #include "drivers/transport/usb_libusb.hpp"
-#include "tests/hil/level2/usb_bench.hpp"
+#include "tests/hil/level2/benches.hpp"
 
 namespace compueye::hil {
 namespace {
@@ -63,13 +63,7 @@ TEST_CASE("usb: every frame of a stream arrives bit for bit, and nothing after S
 
   bench.host.frame_rate_mhz = 400'000;
   REQUIRE(bench.host.restart());
-  for (std::uint64_t k = 0; k < 400; ++k) {
-    const auto block = bench.host.frame();
-    REQUIRE(block);
-    REQUIRE(block->frame == k);
-    REQUIRE(whole(*block));
-    REQUIRE(bench.host.right(*block, k));
-  }
+  bench.check_frames(0, 400);
   CHECK(bench.host.account().total_dropped() == 0);
   REQUIRE(bench.host.request(protocol::Request::stop));
   CHECK(bench.host.status().value().state == protocol::DeviceState::configured);

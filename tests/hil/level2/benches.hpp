@@ -1,5 +1,7 @@
 #pragma once
 
+#include <doctest/doctest.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -8,9 +10,11 @@
 #include <thread>
 #include <utility>
 
+#include "drivers/transport/hid_hidapi.hpp"
 #include "drivers/transport/usb_libusb.hpp"
 #include "hal/clock.hpp"
 #include "tests/drivers/protocol/wire_samples.hpp"
+#include "tests/hil/level2/hid_port.hpp"
 #include "tests/hil/level2/testbed.hpp"
 
 namespace compueye::hil {
@@ -37,27 +41,38 @@ inline bool whole(const hal::SampleBlock& block) {
   return std::all_of(block.valid.begin(), block.valid.end(), [](std::uint8_t valid) { return valid != 0; });
 }
 
-/// An eye in its port and the smallest host in front of the real libusb.
-struct UsbBench {
-  UsbBench(Testbed& testbed, const protocol::EmulatorSettings& settings, transport::UsbSettings usb = {})
-      : port(testbed, settings),
-        transport(std::move(usb)),
-        host(transport, clock, protocol::EmulatedBus::usb, settings.descriptor) {
+/// An eye in its port and the smallest host in front of the real library.
+template <class Port, class Transport, class Settings, protocol::EmulatedBus bus>
+struct Bench {
+  Bench(Testbed& testbed, const protocol::EmulatorSettings& eye, Settings settings = {})
+      : port(testbed, eye), transport(std::move(settings)), host(transport, clock, bus, eye.descriptor) {
     port.plug();
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // it boots
+    wait_for_boot();
   }
+  static void wait_for_boot() { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }
   [[nodiscard]] std::int64_t in_ms(std::int64_t ms) const { return clock.now_ns() + ms * 1'000'000; }
-  /// The account closes: every frame number has one fate.
   [[nodiscard]] hal::Result<std::size_t> read(std::int64_t within_ms) {
     return transport.read(chunk, in_ms(within_ms));
   }
+  /// Reads `count` frames from `first` on, each whole, right and the next one.
+  void check_frames(std::uint64_t first, std::uint64_t count) {
+    for (std::uint64_t k = first; k < first + count; ++k) {
+      const auto block = host.frame();
+      REQUIRE(block);
+      REQUIRE(block->frame == k);
+      REQUIRE(whole(*block));
+      REQUIRE(host.right(*block, k));
+    }
+  }
 
-  UsbPort port;
+  Port port;
   hal::MonotonicClock clock;
-  transport::UsbTransport transport;
+  Transport transport;
   protocol::tests::SmallHost host;
   std::array<std::byte, 16384> chunk{};
 };
+using UsbBench = Bench<UsbPort, transport::UsbTransport, transport::UsbSettings, protocol::EmulatedBus::usb>;
+using HidBench = Bench<HidPort, transport::HidTransport, transport::HidSettings, protocol::EmulatedBus::hid>;
 
 }  // namespace compueye::hil
 

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "tests/hil/emulated_cable.hpp"
+
+namespace compueye::hil {
+
+/// Linux's side of one plugging-in of a HID eye: drivers/hid/hidraw.c and usbhid over the emulated eye. A thread polls
+/// the interrupt endpoint as a host controller does. For clients of this process.
+class EmulatedHidraw {
+ public:
+  static constexpr std::size_t queue_reports = 64;  ///< HIDRAW_BUFFER_SIZE
+  /// The kernel waits five seconds for an answer to a request; here it is in a hurry.
+  static constexpr auto request_timeout = std::chrono::milliseconds(50);
+
+  struct Answer {
+    long result = 0;  ///< of read() or ioctl(): 0 or more, or -1
+    int error = 0;    ///< then errno
+  };
+  struct Counters {
+    std::uint64_t queued = 0, dropped = 0, most_queued = 0;
+  };
+
+  /// `set_ready` makes the device file readable or not; it is called under a lock.
+  EmulatedHidraw(EmulatedCable& cable, std::function<void(bool)> set_ready);
+  ~EmulatedHidraw();
+  EmulatedHidraw(const EmulatedHidraw&) = delete;
+  EmulatedHidraw& operator=(const EmulatedHidraw&) = delete;
+
+  Answer read(std::span<std::byte> into);
+  Answer ioctl(unsigned long request, void* argument);
+  /// A program opened the file: it sees reports from now on.
+  void opened();
+
+  /// The next reads fail so.
+  void fail_reads(int error, int count = 1);
+  [[nodiscard]] Counters counters();
+
+ private:
+  using Transfer = protocol::DeviceEmulator::Transfer;
+  template <class Use>
+  Transfer when_there(Use&& use);
+  void poll_device();
+  bool take_reports();
+  Answer feature(const Transfer& transfer, std::size_t bytes);
+
+  EmulatedCable& cable_;
+  std::function<void(bool)> set_ready_;
+  std::uint64_t attachment_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::vector<std::byte>> reports_;
+  int read_error_ = 0, read_errors_ = 0;
+  bool gone_ = false, stopping_ = false;
+  Counters counters_;
+  std::thread poller_;
+};
+
+/// Input report 1 and feature reports 2 to 5, of 63 bytes behind the id.
+[[nodiscard]] std::vector<std::uint8_t> hid_report_descriptor();
+
+}  // namespace compueye::hil
