@@ -19,9 +19,11 @@ struct UsbSettings {
   static constexpr std::size_t in_flight_limit = std::size_t{16} << 20U;
 
   protocol::UsbIdentity identity = protocol::usb_eye_identity;
-  std::string serial;                                        ///< empty: the first eye that is found
-  int transfers = 16;                                        ///< in flight, 8 .. 32
-  std::size_t transfer_bytes = std::size_t{32} << 10U;       ///< rounded up to whole packets of the endpoint
+  std::string serial;  ///< empty: the first eye that is found
+  int transfers = 32;  ///< in flight, 8 .. 32
+  /// Rounded up to whole packets of the endpoint. Up to 16 KiB, a transfer is one request to every host controller;
+  /// libusb cuts larger ones for old controllers, and 1.0.26 handles an overflow in the middle of one badly.
+  std::size_t transfer_bytes = std::size_t{16} << 10U;
   std::size_t most_in_flight_bytes = std::size_t{8} << 20U;  ///< transfers * transfer_bytes at most; below 16 MiB
 };
 

@@ -39,8 +39,10 @@ EmulatedUsbfs::Answer EmulatedUsbfs::ioctl(unsigned long request, void* argument
   if (gone_) return {-1, ENODEV};
   switch (request) {
     case USBDEVFS_GET_CAPABILITIES:
+      // Those of a host controller for high speed: a transfer of any size is one URB.
       *static_cast<std::uint32_t*>(argument) = USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_BULK_CONTINUATION |
-                                               USBDEVFS_CAP_NO_PACKET_SIZE_LIM | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
+                                               USBDEVFS_CAP_NO_PACKET_SIZE_LIM | USBDEVFS_CAP_BULK_SCATTER_GATHER |
+                                               USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
       return {};
     case USBDEVFS_GET_SPEED:
       return {high_speed, 0};

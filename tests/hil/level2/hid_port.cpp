@@ -6,22 +6,11 @@
 #include <umockdev.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <utility>
 
-#include "drivers/protocol/usb_identity.hpp"
-
 namespace compueye::hil {
 namespace {
-
-constexpr protocol::UsbIdentity identity = protocol::hid_eye_identity;
-
-std::string hex(unsigned value, int digits) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%0*X", digits, value);
-  return text;
-}
 
 /// The device file is a pseudo-terminal; one byte in it means "readable", for poll(). Reads do not take it out.
 class ReadyToken {
@@ -89,22 +78,9 @@ struct HidPort::Plugged {
 };
 
 HidPort::HidPort(Testbed& testbed, const protocol::EmulatorSettings& eye, int port)
-    : cable(eye), testbed_(testbed), port_(port) {}
+    : cable(eye), testbed_(testbed), entry_{.port = port} {}
 
 HidPort::~HidPort() = default;
-
-std::string HidPort::name() const {
-  return "hidraw" + std::to_string(number_);
-}
-
-std::string HidPort::usb_path() const {
-  return "/devices/pci0000:00/usb1/1-" + std::to_string(port_);
-}
-
-std::string HidPort::hid_path() const {
-  return usb_path() + "/1-" + std::to_string(port_) + ":1.0/0003:" + hex(identity.vendor, 4) + ":" +
-         hex(identity.product, 4) + "." + hex(static_cast<unsigned>(number_), 4);
-}
 
 EmulatedHidraw& HidPort::file() {
   REQUIRE_FALSE(all_.empty());
@@ -113,22 +89,13 @@ EmulatedHidraw& HidPort::file() {
 
 void HidPort::plug() {
   REQUIRE_FALSE(plugged_);
-  number_ = testbed_.new_number();
+  entry_.number = testbed_.new_number();
+  entry_.serial = cable.serial();
   all_.push_back(std::make_unique<Plugged>(cable));
-  const std::string node = "/dev/" + name(), number = std::to_string(number_);
+  const std::string node = "/dev/" + name();
   GError* error = nullptr;
   REQUIRE(umockdev_testbed_attach_ioctl(testbed_.get(), node.c_str(), all_.back()->handler, &error));
-  testbed_.add("P: " + usb_path() +
-               "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nA: product=emulated eye\\n\nA: serial=" + cable.serial() +
-               "\\n\nA: bcdDevice=0100\\n\n");
-  testbed_.add("P: " + usb_path() + "/1-" + std::to_string(port_) +
-               ":1.0\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\nA: bInterfaceNumber=00\\n\n");
-  testbed_.add("P: " + hid_path() + "\nE: SUBSYSTEM=hid\nE: HID_ID=0003:" + hex(identity.vendor, 8) + ":" +
-               hex(identity.product, 8) + "\nE: HID_NAME=emulated eye\nE: HID_UNIQ=" + cable.serial() +
-               "\nH: report_descriptor=" + hex_of(hid_report_descriptor()) + "\n");
-  testbed_.add("P: " + hid_path() + "/hidraw/" + name() + "\nN: " + name() + "\nE: SUBSYSTEM=hidraw\nE: DEVNAME=" +
-               node + "\nE: MAJOR=240\nE: MINOR=" + number + "\nA: dev=240:" + number + "\\n\nL: device=../../../" +
-               hid_path().substr(hid_path().rfind('/') + 1) + "\n");
+  for (const std::string& each : entry_.texts()) testbed_.add(each);
   all_.back()->token.attach(umockdev_testbed_get_dev_fd(testbed_.get(), node.c_str()));
   plugged_ = true;
 }
@@ -136,10 +103,8 @@ void HidPort::plug() {
 void HidPort::unplug(const std::string& next_serial) {
   REQUIRE(plugged_);
   cable.replace(next_serial);
-  testbed_.remove("/sys" + hid_path() + "/hidraw/" + name());
-  testbed_.remove("/sys" + hid_path());
-  testbed_.remove("/sys" + usb_path() + "/1-" + std::to_string(port_) + ":1.0");
-  testbed_.remove("/sys" + usb_path());
+  const auto paths = entry_.sys_paths();
+  for (auto each = paths.rbegin(); each != paths.rend(); ++each) testbed_.remove(*each);
   plugged_ = false;
 }
 

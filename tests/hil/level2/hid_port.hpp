@@ -22,18 +22,14 @@ class HidPort {
   void unplug() { unplug(cable.serial()); }
   /// Of the last plug().
   [[nodiscard]] EmulatedHidraw& file();
-  [[nodiscard]] std::string name() const;  ///< "hidraw11"
+  [[nodiscard]] std::string name() const { return entry_.name(); }  ///< "hidraw11"
 
   EmulatedCable cable;
 
  private:
   struct Plugged;
-  [[nodiscard]] std::string usb_path() const;
-  [[nodiscard]] std::string hid_path() const;
-
   Testbed& testbed_;
-  int port_;
-  int number_ = 0;
+  HidEntry entry_;
   bool plugged_ = false;
   std::vector<std::unique_ptr<Plugged>> all_;  // clients of earlier files may still call
 };

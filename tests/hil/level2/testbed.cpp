@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 #include <thread>
@@ -14,8 +13,6 @@
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 
-#include "drivers/protocol/usb_identity.hpp"
-
 namespace compueye::hil {
 namespace {
 
@@ -23,16 +20,6 @@ namespace {
 constexpr auto reap_pause = std::chrono::microseconds(200);
 
 }  // namespace
-
-std::string hex_of(const std::vector<std::uint8_t>& bytes) {
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    char digits[3];
-    std::snprintf(digits, sizeof digits, "%02x", byte);
-    text += digits;
-  }
-  return text;
-}
 
 Testbed::Testbed() : testbed_(umockdev_testbed_new()) {}
 
@@ -87,19 +74,9 @@ struct UsbPort::Plugged {
 };
 
 UsbPort::UsbPort(Testbed& testbed, const protocol::EmulatorSettings& eye, int port)
-    : cable(eye), testbed_(testbed), port_(port) {}
+    : cable(eye), testbed_(testbed), entry_{.port = port} {}
 
 UsbPort::~UsbPort() = default;
-
-std::string UsbPort::sys_path() const {
-  return "/sys/devices/pci0000:00/usb1/1-" + std::to_string(port_);
-}
-
-std::string UsbPort::device_file() const {
-  char text[32];
-  std::snprintf(text, sizeof text, "/dev/bus/usb/001/%03d", address_);
-  return text;
-}
 
 EmulatedUsbfs& UsbPort::file() {
   REQUIRE_FALSE(all_.empty());
@@ -108,19 +85,12 @@ EmulatedUsbfs& UsbPort::file() {
 
 void UsbPort::plug() {
   REQUIRE_FALSE(plugged_);
-  address_ = testbed_.new_number();
+  entry_.address = testbed_.new_number();
   all_.push_back(std::make_unique<Plugged>(cable));
   // First the handler: libusb may open the device as soon as it is announced.
   GError* error = nullptr;
-  REQUIRE(umockdev_testbed_attach_ioctl(testbed_.get(), device_file().c_str(), all_.back()->handler, &error));
-  const std::string number = std::to_string(address_);
-  const protocol::UsbIdentity identity = protocol::usb_eye_identity;
-  testbed_.add("P: " + sys_path().substr(4) + "\nN: " + device_file().substr(5) +
-               "\nE: SUBSYSTEM=usb\nE: DEVTYPE=usb_device\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM=0" + number +
-               "\nE: DEVNAME=" + device_file() + "\nE: MAJOR=189\nE: MINOR=" + std::to_string(address_ - 1) +
-               "\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=" + number +
-               "\\n\nA: speed=480\\n\nH: descriptors=" + hex_of(usb_descriptors(identity.vendor, identity.product)) +
-               "\n");
+  REQUIRE(umockdev_testbed_attach_ioctl(testbed_.get(), entry_.device_file().c_str(), all_.back()->handler, &error));
+  testbed_.add(entry_.text());
   plugged_ = true;
 }
 

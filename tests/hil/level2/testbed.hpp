@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/hil/emulated_cable.hpp"
+#include "tests/hil/umockdev_entries.hpp"
 
 // GLib's types, without its headers.
 extern "C" {
@@ -39,9 +40,6 @@ class Testbed {
   int last_number_ = 10;
 };
 
-/// Bytes as umockdev's "H:" attributes want them.
-[[nodiscard]] std::string hex_of(const std::vector<std::uint8_t>& bytes);
-
 /// A USB port of the testbed with an emulated eye in it.
 class UsbPort {
  public:
@@ -55,16 +53,14 @@ class UsbPort {
   void unplug() { unplug(cable.serial()); }
   /// Of the last plug().
   [[nodiscard]] EmulatedUsbfs& file();
-  [[nodiscard]] std::string sys_path() const;
-  [[nodiscard]] std::string device_file() const;
+  [[nodiscard]] std::string sys_path() const { return entry_.sys_path(); }
 
   EmulatedCable cable;
 
  private:
   struct Plugged;
   Testbed& testbed_;
-  int port_;
-  int address_ = 0;
+  UsbEntry entry_;
   bool plugged_ = false;
   std::vector<std::unique_ptr<Plugged>> all_;  // clients of earlier files may still call
 };

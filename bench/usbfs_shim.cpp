@@ -1,0 +1,118 @@
+#include "bench/usbfs_shim.hpp"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/eventfd.h>
+#include <sys/ioctl.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdarg>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+
+namespace compueye::bench {
+namespace {
+
+/// The device file as poll() sees it: an eventfd. Its counter at the maximum: not writable, so nothing to reap; at 0:
+/// writable, as a usbfs file with a finished URB is.
+class PolledFile {
+ public:
+  void set_ready(int fd, bool ready) {
+    const std::lock_guard lock(mutex_);
+    if (ready == ready_) return;
+    ready_ = ready;
+    std::uint64_t counter = std::numeric_limits<std::uint64_t>::max() - 1;
+    [[maybe_unused]] const ssize_t bytes =
+        ready ? read(fd, &counter, sizeof counter) : write(fd, &counter, sizeof counter);
+  }
+  void opened() {
+    const std::lock_guard lock(mutex_);
+    ready_ = true;
+  }
+
+ private:
+  std::mutex mutex_;
+  bool ready_ = true;
+};
+
+struct Shim {
+  std::string path;
+  hil::EmulatedUsbfs* file = nullptr;
+  std::atomic<int> fd{-1};
+  PolledFile polled;
+};
+
+Shim& shim() {
+  static Shim one;
+  return one;
+}
+
+template <class Function>
+Function next(const char* name) {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+int open_device() {
+  const int fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  shim().polled.opened();
+  shim().polled.set_ready(fd, false);
+  shim().fd = fd;
+  return fd;
+}
+
+}  // namespace
+
+void shim_usbfs(const std::string& path, hil::EmulatedUsbfs& file) {
+  shim().path = path;
+  shim().file = &file;
+}
+
+}  // namespace compueye::bench
+
+using compueye::bench::next;
+using compueye::bench::shim;
+
+extern "C" {
+
+int open(const char* path, int flags, ...) {
+  if (shim().file != nullptr && shim().path == path) return compueye::bench::open_device();
+  static const auto real = next<int (*)(const char*, int, ...)>("open");
+  if ((flags & O_CREAT) == 0) return real(path, flags);
+  va_list arguments;
+  va_start(arguments, flags);
+  const mode_t mode = va_arg(arguments, mode_t);
+  va_end(arguments);
+  return real(path, flags, mode);
+}
+
+/// What open() is called in a library built with _FORTIFY_SOURCE, as Debian's are.
+int __open_2(const char* path, int flags) {
+  return open(path, flags);
+}
+
+int ioctl(int fd, unsigned long request, ...) noexcept {
+  va_list arguments;
+  va_start(arguments, request);
+  void* const argument = va_arg(arguments, void*);
+  va_end(arguments);
+  if (fd >= 0 && fd == shim().fd) {
+    const auto answer = shim().file->ioctl(request, argument);
+    shim().polled.set_ready(fd, shim().file->ready());
+    if (answer.result < 0) errno = answer.error;
+    return answer.result;
+  }
+  static const auto real = next<int (*)(int, unsigned long, ...)>("ioctl");
+  return real(fd, request, argument);
+}
+
+int close(int fd) {
+  int ours = fd;
+  if (fd >= 0) shim().fd.compare_exchange_strong(ours, -1);
+  static const auto real = next<int (*)(int)>("close");
+  return real(fd);
+}
+}

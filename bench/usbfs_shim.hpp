@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "tests/hil/emulated_usbfs.hpp"
+
+namespace compueye::bench {
+
+/// From now on, opening `path` in this process, by whatever library, opens `file`: the program defines open(), ioctl()
+/// and close(), and hands everything else to what was loaded before it (umockdev, the C library). umockdev alone takes
+/// a socket round trip for each ioctl and never lets poll() sleep. The program must be linked with -rdynamic.
+void shim_usbfs(const std::string& path, hil::EmulatedUsbfs& file);
+
+}  // namespace compueye::bench
