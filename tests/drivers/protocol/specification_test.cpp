@@ -2,11 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include <charconv>
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <sstream>
 
 #include "drivers/protocol/cobs.hpp"
 #include "drivers/protocol/configuration.hpp"
@@ -17,108 +13,17 @@
 #include "drivers/protocol/requests.hpp"
 #include "drivers/protocol/status.hpp"
 #include "tests/drivers/protocol/wire_samples.hpp"
+#include "tests/drivers/specification_page.hpp"
 
 using namespace compueye::protocol;
 using namespace compueye::protocol::tests;
-
-namespace {
-
-using Row = std::vector<std::string>;
-
-unsigned number_in(std::string text) {
-  const bool hex = text.starts_with("0x");
-  if (hex) text.erase(0, 2);
-  unsigned value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, hex ? 16 : 10);
-  CAPTURE(text);
-  REQUIRE(error == std::errc());
-  REQUIRE(end == text.data() + text.size());
-  return value;
-}
-
-/// "31 32", "32 times FF" or "(none)".
-std::vector<std::byte> bytes_in(const std::string& text) {
-  if (const auto times = text.find(" times "); times != std::string::npos) {
-    return std::vector<std::byte>(number_in(text.substr(0, times)), bytes_in(text.substr(times + 7)).at(0));
-  }
-  std::istringstream words(text);
-  std::vector<std::byte> bytes;
-  for (std::string word; words >> word && word != "(none)";) {
-    bytes.push_back(static_cast<std::byte>(number_in("0x" + word)));
-  }
-  return bytes;
-}
-
-class Page {
- public:
-  Page() {
-    std::ifstream file(COMPUEYE_SOURCE_DIR "/docs/protocol.md");
-    REQUIRE(file);
-    std::string line, heading, block;
-    while (std::getline(file, line)) {
-      if (line.starts_with("```")) {
-        block = line.starts_with("```hex ") ? line.substr(7) : std::string();
-      } else if (!block.empty()) {
-        const auto more = bytes_in(line);
-        hex_[block].insert(hex_[block].end(), more.begin(), more.end());
-      } else if (line.starts_with("#")) {
-        heading = line.substr(line.find(' ') + 1);
-      } else if (line.starts_with("| ")) {
-        tables_[heading].push_back(cells(line));
-      }
-    }
-  }
-  [[nodiscard]] const std::vector<std::byte>& hex(const std::string& name) const {
-    CAPTURE(name);
-    REQUIRE(hex_.contains(name));
-    return hex_.at(name);
-  }
-  /// All rows below a heading, the titles of each table among them.
-  [[nodiscard]] const std::vector<Row>& rows(const std::string& heading) const {
-    CAPTURE(heading);
-    REQUIRE(tables_.contains(heading));
-    return tables_.at(heading);
-  }
-  /// The table of bytes below a heading leaves no byte out; its length.
-  [[nodiscard]] unsigned described_bytes(const std::string& heading) const {
-    unsigned next = 0;
-    bool in_table = false;
-    for (const Row& row : rows(heading)) {
-      if (row[0] == "offset") {
-        in_table = true;
-      } else if (in_table && row[0].find_first_not_of("0123456789") == std::string::npos) {
-        CAPTURE(row[2]);
-        CHECK(number_in(row[0]) == next);
-        next += number_in(row[1]);
-      } else {
-        in_table = false;
-      }
-    }
-    return next;
-  }
-
- private:
-  static Row cells(const std::string& line) {
-    Row row;
-    for (std::size_t at = 2; at < line.size();) {
-      const std::size_t end = line.find('|', at);
-      std::string cell = line.substr(at, end - at);
-      std::erase(cell, '`');
-      while (!cell.empty() && cell.back() == ' ') cell.pop_back();
-      row.push_back(cell);
-      at = end == std::string::npos ? line.size() : end + 2;
-    }
-    return row;
-  }
-
-  std::map<std::string, std::vector<std::byte>> hex_;
-  std::map<std::string, std::vector<Row>> tables_;
-};
-
-}  // namespace
+using compueye::tests::bytes_in;
+using compueye::tests::number_in;
+using compueye::tests::Page;
+using compueye::tests::Row;
 
 TEST_CASE("the specification's tables describe every byte") {
-  const Page page;
+  const Page page("protocol.md");
   CHECK(page.described_bytes("Header: 40 bytes") == header_bytes);
   CHECK(page.described_bytes("Descriptor") == 48);
   CHECK(page.described_bytes("Configuration") == Configuration::bytes);
@@ -129,7 +34,7 @@ TEST_CASE("the specification's tables describe every byte") {
 }
 
 TEST_CASE("the specification's numbers are those of the code") {
-  const Page page;
+  const Page page("protocol.md");
   const std::map<std::string, unsigned> expected{{"SOF", packet_flag::sof},
                                                  {"EOF", packet_flag::eof},
                                                  {"OVERRUN", packet_flag::overrun},
@@ -159,7 +64,7 @@ TEST_CASE("the specification's numbers are those of the code") {
 }
 
 TEST_CASE("the specification's CRC vectors hold") {
-  const Page page;
+  const Page page("protocol.md");
   std::size_t checked = 0;
   for (const Row& row : page.rows("CRC-32C")) {
     if (!row[1].starts_with("0x")) continue;
@@ -171,7 +76,7 @@ TEST_CASE("the specification's CRC vectors hold") {
 }
 
 TEST_CASE("the specification's packet decodes to what the page says, alone and through COBS") {
-  const Page page;
+  const Page page("protocol.md");
   PacketStream stream({5, 8});
   stream.feed(page.hex("packet"));
   const auto packet = stream.next();
@@ -212,7 +117,7 @@ TEST_CASE("the specification's packet decodes to what the page says, alone and t
 }
 
 TEST_CASE("the specification's descriptor and configuration are what the page says") {
-  const Page page;
+  const Page page("protocol.md");
   DeviceDescriptor d;
   d.serial = "CE-0001";
   d.firmware = "1.0.0";
