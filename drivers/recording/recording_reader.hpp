@@ -65,6 +65,8 @@ class RecordingReader {
   /// transport_gap. Always balanced, and frame + 1 - delivered <= total_dropped() after each frame.
   [[nodiscard]] hal::FrameAccount account() const noexcept;
   [[nodiscard]] std::uint64_t frames() const noexcept { return delivered_; }
+  /// Offset behind the last whole block.
+  [[nodiscard]] std::uint64_t position() const noexcept { return at_; }
   [[nodiscard]] std::uint64_t unrecorded() const noexcept { return last_.unrecorded; }
   [[nodiscard]] const RecordingDamage& damage() const noexcept { return damage_; }
   /// Nothing for a recording that was cut off, or before its end.

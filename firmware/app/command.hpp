@@ -19,5 +19,7 @@ void add_run_command(CLI::App& app, Action& chosen);
 void add_compare_command(CLI::App& app, Action& chosen);
 void add_pareto_command(CLI::App& app, Action& chosen);
 void add_devices_command(CLI::App& app, Action& chosen);
+void add_record_command(CLI::App& app, Action& chosen);
+void add_replay_command(CLI::App& app, Action& chosen);
 
 }  // namespace compueye::firmware

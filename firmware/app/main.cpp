@@ -23,6 +23,8 @@ int run(int argc, char** argv) {
   firmware::add_compare_command(app, chosen);
   firmware::add_pareto_command(app, chosen);
   firmware::add_inspect_command(app, chosen);
+  firmware::add_record_command(app, chosen);
+  firmware::add_replay_command(app, chosen);
   firmware::add_devices_command(app, chosen);
   try {
     app.parse(argc, argv);

@@ -15,6 +15,8 @@ const std::map<std::string, OutputFormat> formats{{"png", OutputFormat::png},
                                                   {"png16", OutputFormat::png16},
                                                   {"npy", OutputFormat::npy},
                                                   {"none", OutputFormat::none}};
+const std::map<std::string, recording::ReplayPace> paces{{"fast", recording::ReplayPace::fast},
+                                                         {"recorded", recording::ReplayPace::recorded}};
 const std::map<std::string, TableOutput> tables{
     {"header", TableOutput::header}, {"row", TableOutput::row}, {"both", TableOutput::both}};
 
@@ -30,6 +32,7 @@ std::string footer() {
          "Examples:\n"
          "  compueye run --board boards/sim-8x8 --frames 200\n"
          "  compueye run --board boards/sim-80x80 --lossless --frames 5 --sheet sheet.png\n"
+         "  compueye run --board boards/sim-8x8 --replay eye.rec --out pictures\n"
          "  compueye run --board boards/sim-80x80 --deadline 250 --frames 20 --out pictures --format png16";
 }
 
@@ -37,7 +40,15 @@ void add_scene_options(CLI::App& command, RunOptions& o) {
   command.add_option("--scene", o.scene,
                      "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
   command.add_option("--scene-seed", o.scene_seed, "which drawing of a built-in scene (default 0)");
-  command.add_option("--seed", o.seed, "of the noise (default 0); the same seed gives the same samples");
+  auto* seed = command.add_option("--seed", o.seed, "of the noise (default 0); the same seed gives the same samples");
+  command
+      .add_option("--replay", o.replay,
+                  "a recording instead of the board's eye, all of it unless --frames says less; name its --scene to "
+                  "have the pictures compared with it")
+      ->excludes(seed);
+  command.add_option("--pace", o.replay_pace, "of a replay: fast (default; every frame is waited for) or recorded")
+      ->transform(CLI::CheckedTransformer(paces));
+  command.add_option("--record", o.record, "file for the raw frames besides, for --replay; never overwritten");
   command.add_option("--distance", o.distance_mm, "of the object from the lens tip in mm, known to the reconstruction");
   command.add_option("--scene-distance", o.scene_distance_mm,
                      "of the scene alone in mm: the reconstruction goes on expecting it on the object plane");

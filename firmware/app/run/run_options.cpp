@@ -35,17 +35,26 @@ Result<void> within(const std::string& option, const std::optional<Number>& valu
 Result<void> RunOptions::check() const {
   constexpr double longest_mm = 1e6, longest_ms = 1e9, most_frames = 1e15, most_iterations = 1e6, largest = 1e12;
   for (const auto& checked :
-       {within("--frames", frames, 0, false, most_frames), within("--deadline", deadline_ms, 0, true, longest_ms),
+       {within("--frames", frames, 0, false, most_frames),
+        within("--deadline", deadline_ms, 0, true, longest_ms),
         within("--seed", std::optional(seed), 0, false, 9e18),
         within("--scene-seed", std::optional(scene_seed), 0, false, 9e18),
         within("--distance", distance_mm, 0, true, longest_mm),
         within("--scene-distance", scene_distance_mm, 0, true, longest_mm),
         within("--iterations", iterations, 1, false, most_iterations),
         within("--threads", threads, 1, false, recon::WorkerThreads::most),
-        within("--lambda", lambda, 0, false, largest), within("--sigma", sigma, 0, false, largest),
+        within("--lambda", lambda, 0, false, largest),
+        within("--sigma", sigma, 0, false, largest),
         need(!(lambda && sigma), "--sigma", "cannot go with --lambda: the noise is what lambda would be made from"),
         need(!(deadline_ms && lossless), "--deadline",
              "cannot go with --lossless, where frames wait for as long as it takes; leave one of them out"),
+        need(!(deadline_ms && replays() && waits_for_frames()), "--deadline",
+             "needs --pace recorded and no --lossless with --replay, since otherwise frames wait for as long as it "
+             "takes"),
+        need(replays() || !replay_pace, "--pace", "needs --replay FILE"),
+        need(!replays() || record.empty(), "--record", "cannot go with --replay: the frames are in that file already"),
+        need(sheet.empty() || knows_scene(), "--sheet",
+             "needs --scene with --replay: it compares the picture with the scene that was recorded"),
         need(!(json && show.value_or(false)), "--show",
              "cannot go with --json: both would write to the standard output"),
         need(!(json && table != TableOutput::no), "--table",
@@ -56,6 +65,10 @@ Result<void> RunOptions::check() const {
     if (!checked) return checked;
   }
   return {};
+}
+
+bool RunOptions::waits_for_frames() const noexcept {
+  return lossless || (replays() && replay_pace.value_or(recording::ReplayPace::fast) == recording::ReplayPace::fast);
 }
 
 OutputFormat RunOptions::output_format() const noexcept {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "drivers/recording/replay_source.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
@@ -26,6 +27,9 @@ struct RunOptions {
   std::optional<OutputFormat> format;       ///< absent: png with `out`, else none
   std::optional<bool> show;                 ///< absent: when stdout is a terminal
   bool lossless = false;
+  std::filesystem::path replay;                      ///< a recording instead of the board's eye; empty: none
+  std::optional<recording::ReplayPace> replay_pace;  ///< absent: fast
+  std::filesystem::path record;                      ///< where the frames go besides; empty: nowhere
   std::optional<std::int64_t> iterations;
   std::optional<std::int64_t> threads;
   std::optional<double> lambda;
@@ -38,6 +42,11 @@ struct RunOptions {
   /// Contradictions and values out of range. Error usage names the option.
   [[nodiscard]] hal::Result<void> check() const;
   [[nodiscard]] OutputFormat output_format() const noexcept;
+  [[nodiscard]] bool replays() const noexcept { return !replay.empty(); }
+  /// Every frame is waited for: as asked, and when a recording is replayed as fast as it can be.
+  [[nodiscard]] bool waits_for_frames() const noexcept;
+  /// Whether the scene in front of the eye is known, to compare pictures with: a recording's is only when it is named.
+  [[nodiscard]] bool knows_scene() const noexcept { return !replays() || !scene.empty(); }
 };
 
 }  // namespace compueye::firmware

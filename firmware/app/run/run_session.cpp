@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "firmware/app/eye/conventional_eye.hpp"
@@ -12,6 +13,7 @@
 #include "firmware/app/eye/scene_choice.hpp"
 #include "firmware/app/eye/simulated_board.hpp"
 #include "firmware/app/pareto/stored_points.hpp"
+#include "firmware/app/recording/recorded_with.hpp"
 #include "firmware/app/report/error_report.hpp"
 #include "firmware/app/report/progress_reporter.hpp"
 #include "firmware/app/report/visible_text.hpp"
@@ -23,6 +25,7 @@
 #include "firmware/app/run/run_outputs.hpp"
 #include "firmware/app/run/run_report.hpp"
 #include "firmware/app/run/run_sheet.hpp"
+#include "firmware/app/run/run_source.hpp"
 #include "firmware/app/run/run_watch.hpp"
 #include "firmware/app/run/stop_signals.hpp"
 #include "firmware/app/run/trial.hpp"
@@ -30,7 +33,6 @@
 #include "firmware/pipeline/pipeline.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "sim/scene_truth.hpp"
-#include "sim/simulated_eye.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -74,7 +76,6 @@ class RunSession {
   Result<void> prepare();
   Result<void> make_eye();
   Result<void> choose_eye(const recon::Progress& ask);
-  Result<void> make_source();
   [[nodiscard]] ReadyEye& eye() { return ladder_.eyes.front(); }
   [[nodiscard]] const ReadyEye& eye() const { return ladder_.eyes.front(); }
   [[nodiscard]] double period_ms() const { return 1e3 / board_.source.frame_rate_hz; }
@@ -91,7 +92,7 @@ class RunSession {
   void fill_figures();
   [[nodiscard]] PipelineSettings pipeline_settings() const;
   [[nodiscard]] std::uint64_t frames() const {
-    return static_cast<std::uint64_t>(options_.frames.value_or(board_.scene.frames_per_scene));
+    return static_cast<std::uint64_t>(options_.frames.value_or(options_.replays() ? 0 : board_.scene.frames_per_scene));
   }
 
   const RunOptions& options_;
@@ -102,7 +103,7 @@ class RunSession {
   hal::Image truth_;
   PointLadder ladder_;                     // its first eye is the board's, its rungs are empty without stored points
   std::vector<std::string> choice_notes_;  // said when the set-up no longer redraws its line
-  std::unique_ptr<sim::SimulatedEye> source_;
+  std::optional<RunSource> source_;
   std::unique_ptr<FrameKeeper> keeper_;
   hal::Image conventional_;
   RunReport report_;
@@ -121,6 +122,9 @@ Result<void> RunSession::prepare() {
   board_ = std::move(*board);
   if (options_.distance_mm) board_.object.distance_mm = *options_.distance_mm;
   if (auto tried = try_outputs(options_); !tried) return tried;
+  if (!options_.record.empty()) {
+    if (auto checked = check_new_recording(options_.record); !checked) return checked;
+  }
   auto scene = choose_scene(
       board_, {options_.scene, static_cast<std::uint64_t>(options_.scene_seed), options_.scene_distance_mm});
   if (!scene) return tl::unexpected(std::move(scene.error()));
@@ -128,10 +132,10 @@ Result<void> RunSession::prepare() {
   auto truth = sim::scene_truth(scene_, board_.object);
   if (!truth) return tl::unexpected(std::move(truth.error()));
   truth_ = std::move(*truth);
-  report_.scene = scene_.name;
+  report_.scene = options_.knows_scene() ? scene_.name : "not known";
   report_.seed = options_.seed;
   report_.distance_mm = board_.object.distance_mm;
-  report_.lossless = options_.lossless;
+  report_.lossless = options_.waits_for_frames();
   return {};
 }
 
@@ -143,9 +147,11 @@ Result<void> RunSession::make_eye() {
       progress.update(what, done, total);
       return !signals_.requested().load(std::memory_order_relaxed);
     };
+    progress.update(options_.replays() ? "recording" : "simulated eye", 0.0, 0.0);
+    auto made = RunSource::make(options_, board_, scene_, frames(), clock_);
+    if (!made) return tl::unexpected(std::move(made.error()));
+    source_ = std::move(*made);
     if (auto chosen = choose_eye(ask); !chosen) return chosen;
-    progress.update("simulated eye", 0.0, 0.0);
-    if (auto made = make_source(); !made) return made;
     progress.finish();
   }
   for (const std::string& sentence : choice_notes_) note(sentence);
@@ -188,20 +194,11 @@ Result<void> RunSession::choose_eye(const recon::Progress& ask) {
   return {};
 }
 
-Result<void> RunSession::make_source() {
-  auto settings = simulated_eye_settings(board_, scene_, static_cast<std::uint64_t>(options_.seed));
-  if (!options_.lossless) settings.frame_rate_hz = board_.source.frame_rate_hz;
-  // Without a limit the frames read ahead of the last one would be made only to be thrown away.
-  if (options_.lossless && frames() > 0) settings.frame_limit = frames();
-  auto source = sim::SimulatedEye::create(std::move(settings), clock_);
-  if (!source) return tl::unexpected(std::move(source.error()));
-  source_ = std::move(*source);
-  return {};
-}
-
 Result<void> RunSession::fit() {
-  const auto frame =
-      take_trial_frame(board_, correction_settings(board_, eye().sees()), *source_, clock_, signals_.requested());
+  // Whatever a recording's first frame is like, others may be better.
+  if (options_.replays() && !(options_.deadline_ms && ladder_.rungs.empty())) return {};
+  const auto frame = take_trial_frame(board_, correction_settings(board_, eye().sees()), source_->unrecorded(), clock_,
+                                      signals_.requested());
   if (!frame) return tl::unexpected(frame.error());
   if (options_.deadline_ms && ladder_.rungs.empty()) {
     const auto choice = fit_deadline(*options_.deadline_ms, period_ms(), *frame, eye(), clock_);
@@ -215,10 +212,10 @@ Result<void> RunSession::fit() {
 
 PipelineSettings RunSession::pipeline_settings() const {
   PipelineSettings settings;
-  settings.pacing = options_.lossless ? Pacing::every_frame : Pacing::newest_wins;
+  settings.pacing = options_.waits_for_frames() ? Pacing::every_frame : Pacing::newest_wins;
   settings.frames = frames();
   if (options_.deadline_ms) settings.deadline_ns = std::llround(*options_.deadline_ms * 1e6);
-  if (options_.lossless) settings.queue_capacity = 1;
+  if (options_.waits_for_frames()) settings.queue_capacity = 1;
   // The simulated device counts its time from its own power-on, as a real one does.
   settings.device_clock = DeviceClock::free_running;
   settings.silence_limit_ns += static_cast<std::int64_t>(2e9 / std::max(board_.source.frame_rate_hz, 1e-3));
@@ -229,7 +226,7 @@ PipelineSettings RunSession::pipeline_settings() const {
 void RunSession::fill_figures() {
   const recon::Reconstructor& r = eye().reconstructor();
   report_.eye = {.board = board_.name,
-                 .source = board_.source.kind + " " + board_.source.serial,
+                 .source = source_->name(),
                  .ommatidia = board_.eye.ommatidia(),
                  .blind = static_cast<int>(std::count(eye().sees().begin(), eye().sees().end(), 0)),
                  .dead = static_cast<int>(board_.sensor.dead.size()),
@@ -262,11 +259,17 @@ Result<void> RunSession::run_pipeline() {
 }
 
 Result<void> RunSession::run_with(FrameSolver& solver, hal::FrameSink& sink, FrameObserver& observer) {
-  auto pipeline = Pipeline::create(pipeline_settings(), *source_, solver, sink, clock_, &observer);
+  auto pipeline = Pipeline::create(pipeline_settings(), source_->source(), solver, sink, clock_, &observer);
   if (!pipeline) return tl::unexpected(std::move(pipeline.error()));
   std::unique_ptr<RunWatch> watch;
   if (!shows_pictures(options_)) watch = std::make_unique<RunWatch>(*keeper_, frames());
   report_.summary = pipeline->run(signals_.requested());
+  watch.reset();
+  for (const std::string& sentence : source_->notes()) note(sentence);
+  if (auto recorded = source_->recorded(); !recorded && !report_.summary.error) {
+    report_.summary.error = std::move(recorded.error());
+  }
+  if (!options_.record.empty()) report_.files.push_back(options_.record.string());
   return {};
 }
 
@@ -299,6 +302,7 @@ Result<void> RunSession::compare_or_note() {
 }
 
 Result<void> RunSession::compare() {
+  if (!options_.knows_scene()) return {};
   if (auto measured = measure_quality(); !measured) return measured;
   if (keeper_->delivered() == 0) return {};
   auto conventional = conventional_picture(board_, scene_, static_cast<std::uint64_t>(options_.seed));

@@ -1,0 +1,35 @@
+#include "firmware/app/recording/recorded_with.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <chrono>
+
+#include "drivers/recording/recording_file.hpp"
+#include "firmware/app/report/visible_text.hpp"
+
+namespace compueye::firmware {
+
+std::string RecordedWith::text(const Board& board) const {
+  return fmt::format("board = {}\ndistance_mm = {}\nscene = {}\nscene_seed = {}\nseed = {}\n", visible_text(board.name),
+                     board.object.distance_mm, visible_text(scene), scene_seed, seed);
+}
+
+std::int64_t unix_minus(const hal::Clock& clock) {
+  using namespace std::chrono;
+  return duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count() - clock.now_ns();
+}
+
+hal::Result<void> check_new_recording(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (std::filesystem::is_regular_file(path, ignored)) {
+    return tl::unexpected(recording::file_failure(EEXIST, path, "cannot be written"));
+  }
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    return tl::unexpected(recording::file_failure(ENOENT, path, "cannot be written"));
+  }
+  return {};
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,94 @@
+#include "firmware/app/run/run_source.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "firmware/app/eye/simulated_board.hpp"
+#include "firmware/app/recording/recorded_with.hpp"
+#include "sim/simulated_eye.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::Result;
+
+Result<void> check_fits(const hal::SourceDescription& source, const Board& board, const std::string& file) {
+  if (source.channels == board.eye.ommatidia() && source.bits == board.sensor.bits) return {};
+  return hal::fail(hal::ErrorCode::mismatch, file,
+                   fmt::format("is of {} channels of {} bits, board {} has {} of {}; name the board it was recorded on",
+                               source.channels, source.bits, board.name, board.eye.ommatidia(), board.sensor.bits));
+}
+
+}  // namespace
+
+Result<RunSource> RunSource::make(const RunOptions& options, const Board& board, const sim::Scene& scene,
+                                  std::uint64_t frames, hal::Clock& clock) {
+  RunSource made;
+  if (options.replays()) {
+    auto replay =
+        recording::ReplaySource::open(options.replay, options.replay_pace.value_or(recording::ReplayPace::fast), clock);
+    if (!replay) return tl::unexpected(std::move(replay.error()));
+    if (auto fits = check_fits((*replay)->describe(), board, options.replay.string()); !fits) {
+      return tl::unexpected(std::move(fits.error()));
+    }
+    made.replay_ = replay->get();
+    made.source_ = std::move(*replay);
+    return made;
+  }
+  auto settings = simulated_eye_settings(board, scene, static_cast<std::uint64_t>(options.seed));
+  if (!options.lossless) settings.frame_rate_hz = board.source.frame_rate_hz;
+  // Without a limit the frames read ahead of the last one would be made only to be thrown away.
+  if (options.lossless && frames > 0) settings.frame_limit = frames;
+  auto eye = sim::SimulatedEye::create(std::move(settings), clock);
+  if (!eye) return tl::unexpected(std::move(eye.error()));
+  made.source_ = std::move(*eye);
+  if (options.record.empty()) return made;
+  recording::RecordingSettings recording;
+  recording.path = options.record;
+  recording.settings = RecordedWith{scene.name, options.scene_seed, options.seed}.text(board);
+  recording.unix_minus_clock_ns = unix_minus(clock);
+  recording.when_full = options.lossless ? recording::WhenFull::wait : recording::WhenFull::skip;
+  auto recorder = recording::RecordingSource::create(std::move(recording), *made.source_, clock);
+  if (!recorder) return tl::unexpected(std::move(recorder.error()));
+  made.recorder_ = std::move(*recorder);
+  return made;
+}
+
+hal::SampleSource& RunSource::source() noexcept {
+  if (recorder_) return *recorder_;
+  return *source_;
+}
+
+std::string RunSource::name() const {
+  const hal::SourceDescription& d = source_->describe();
+  return d.backend + " " + d.serial + (replay_ != nullptr ? " from " + replay_->recording().place() : std::string());
+}
+
+std::vector<std::string> RunSource::notes() const {
+  std::vector<std::string> notes;
+  if (replay_ != nullptr) {
+    const recording::RecordingDamage& damage = replay_->recording().damage();
+    const std::string& file = replay_->recording().place();
+    if (damage.stretches > 0) {
+      notes.push_back(fmt::format("{}: {} damaged bytes, the first at byte {}, which cost {} frames", file,
+                                  damage.bytes, damage.first_at, damage.blocks));
+    }
+    if (damage.torn_bytes > 0) {
+      notes.push_back(fmt::format("{}: a torn tail of {} bytes from byte {} on is not read", file, damage.torn_bytes,
+                                  damage.torn_at));
+    }
+  }
+  if (recorder_ && recorder_->unrecorded() > 0) {
+    notes.push_back(fmt::format("{}: {} frames are not in it, which did not keep up", recorder_->path().string(),
+                                recorder_->unrecorded()));
+  }
+  return notes;
+}
+
+Result<void> RunSource::recorded() const {
+  if (recorder_ && recorder_->error()) return tl::unexpected(*recorder_->error());
+  return {};
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,181 @@
+#include <doctest/doctest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/firmware/cli_run/copied_board.hpp"
+
+using namespace compueye;
+using namespace compueye::test;
+
+namespace {
+
+nlohmann::json json_of(const Ended& ended) {
+  REQUIRE_MESSAGE(ended.exit_code == 0, ended.err);
+  const auto json = nlohmann::json::parse(ended.out, nullptr, false);
+  REQUIRE_FALSE(json.is_discarded());
+  return json;
+}
+
+nlohmann::json record(const CopiedBoard& board, const std::filesystem::path& file, std::vector<std::string> more) {
+  more.insert(more.begin(), {"record", "--board", board.path().string(), "--out", file.string(), "--json"});
+  return json_of(test::compueye(more));
+}
+
+nlohmann::json replay(const std::filesystem::path& file) {
+  return json_of(test::compueye({"replay", file.string(), "--json"}));
+}
+
+}  // namespace
+
+TEST_CASE("what was recorded is told by replay") {
+  const CopiedBoard board;
+  const auto file = board.outside("eye.rec");
+  const auto recorded = record(board, file, {"--frames", "25", "--lossless", "--scene", "dots", "--seed", "9"});
+  CHECK(recorded["frames_recorded"] == 25);
+  CHECK(recorded["frames_unrecorded"] == 0);
+  CHECK(recorded["file_bytes"] == std::filesystem::file_size(file));
+  const auto told = replay(file);
+  CHECK(told["frames"]["delivered"] == 25);
+  CHECK(told["frames"]["balanced"] == true);
+  CHECK(told["source"]["backend"] == "sim");
+  CHECK(told["source"]["serial"] == "SIM-8X8");
+  CHECK(told["source"]["channels"] == 64);
+  CHECK(told["gaps"]["count"] == 0);
+  CHECK(told["torn_tail"]["bytes"] == 0);
+  CHECK(told["end"]["why"] == "stopped");
+  CHECK(contains(told["settings"], "scene = dots\n"));
+  CHECK(contains(told["settings"], "seed = 9\n"));
+  const Ended text = test::compueye({"replay", file.string()});
+  CHECK(contains(text.out, "25 produced = 25 recorded + 0 dropped"));
+  CHECK(contains(text.out, "ended: stopped"));
+}
+
+TEST_CASE("a recorded run replays into the same pictures, bit for bit, at both paces") {
+  const CopiedBoard board;
+  const auto file = board.outside("eye.rec"), live = board.outside("live"), beside = board.outside("beside.rec");
+  board.run_json({"--frames", "12", "--lossless", "--seed", "5", "--record", beside.string(), "--out", live.string(),
+                  "--format", "npy"});
+  record(board, file, {"--frames", "12", "--lossless", "--seed", "5"});
+  const std::string pictures = bytes_of(live / "frames.npy");
+  REQUIRE(pictures.size() > 12 * 16 * 16 * 4);
+  int which = 0;
+  for (const auto& recording : {beside, file}) {
+    for (const std::string pace : {"fast", "recorded"}) {
+      CAPTURE(pace);
+      const auto again = board.outside("again-" + std::to_string(which++));
+      const auto json = board.run_json(
+          {"--replay", recording.string(), "--pace", pace, "--lossless", "--out", again.string(), "--format", "npy"});
+      CHECK(json["frames"]["delivered"] == 12);
+      CHECK(json["ending"] == "end of stream");
+      CHECK(json["scene"] == "not known");
+      CHECK(json["quality"].is_null());
+      CHECK(bytes_of(again / "frames.npy") == pictures);
+    }
+  }
+  const auto compared = board.run_json({"--replay", file.string(), "--scene", "fig2", "--frames", "5"});
+  CHECK(compared["frames"]["delivered"] == 5);
+  CHECK(compared["quality"]["nmse"].get<double>() < 1e-3);
+}
+
+TEST_CASE("a damaged and torn recording still runs, and the run says what is missing") {
+  const CopiedBoard board;
+  const auto file = board.outside("eye.rec");
+  record(board, file, {"--frames", "12", "--lossless"});
+  std::string bytes = bytes_of(file);
+  const std::size_t frame = 124 + 8 + 128 + 4, first = bytes.size() - 128 - 12 * frame;
+  bytes[first + 4 * frame + 77] ^= 2;
+  bytes.resize(first + 11 * frame + 99);
+  std::ofstream(file, std::ios::binary) << bytes;
+  const Ended ended = board.run({"--replay", file.string(), "--json"});
+  const auto json = json_of(ended);
+  CHECK(json["frames"]["delivered"] == 10);
+  CHECK(json["frames"]["dropped"]["corrupt"] == 1);
+  CHECK(json["frames"]["balanced"] == true);
+  CHECK(contains(ended.err, "torn tail of 99 bytes from byte " + std::to_string(first + 11 * frame)));
+  CHECK(contains(ended.err, "the first at byte " + std::to_string(first + 4 * frame)));
+  const auto told = replay(file);
+  CHECK(told["torn_tail"]["bytes"] == 99);
+  CHECK(told["damage"]["frames"] == 1);
+  CHECK(told["gaps"]["missing_frames"] == 1);
+  CHECK(told["end"].is_null());
+}
+
+TEST_CASE("a recording by time is about as long, and Ctrl-C keeps what there is") {
+  const CopiedBoard board;
+  const auto timed = board.outside("timed.rec"), stopped = board.outside("stopped.rec");
+  const auto recorded = record(board, timed, {"--seconds", "0.4"});
+  CHECK(recorded["wall_s"].get<double>() >= 0.4);
+  CHECK(recorded["frames_recorded"].get<int>() > 5);
+  CHECK(recorded["frames_recorded"].get<int>() <= 85);
+
+  Program program({"record", "--board", board.path().string(), "--frames", "0", "--out", stopped.string(), "--json"});
+  const auto began = std::chrono::steady_clock::now();
+  std::error_code ignored;
+  while ((!std::filesystem::exists(stopped) || std::filesystem::file_size(stopped, ignored) < 3000) &&
+         std::chrono::steady_clock::now() - began < std::chrono::seconds(60)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  program.signal(SIGINT);
+  const auto json = json_of(program.wait());
+  CHECK(json["ending"] == "stop requested");
+  const auto told = replay(stopped);
+  CHECK(told["frames"]["delivered"] == json["frames_recorded"]);
+  CHECK(told["end"]["why"] == "stopped");
+}
+
+TEST_CASE("errors of recordings name the file and what is wrong") {
+  const CopiedBoard board;
+  const auto file = board.outside("eye.rec");
+  const std::string at = board.path().string(), rec = file.string();
+  record(board, file, {"--frames", "2", "--lossless"});
+  const std::string bytes = bytes_of(file);
+  const auto cut = board.outside("cut.rec"), flipped = board.outside("flipped.rec");
+  std::ofstream(cut, std::ios::binary) << bytes.substr(0, 100);
+  std::string damaged = bytes;
+  damaged[60] ^= 1;
+  std::ofstream(flipped, std::ios::binary) << damaged;
+  const CopiedBoard other("sim-80x80");
+  struct Case {
+    std::vector<std::string> arguments;
+    int exit_code;
+    std::vector<std::string> said;
+  };
+  const std::vector<Case> cases{
+      {{"record", "--board", at, "--out", rec}, 1, {rec, "never overwritten"}},
+      {{"run", "--board", at, "--record", rec}, 1, {rec, "never overwritten"}},
+      {{"record", "--board", at, "--out", "/dev/full"}, 1, {"/dev/full", "No space left"}},
+      {{"record", "--board", at, "--out", rec + "/x.rec"}, 1, {rec + "/x.rec"}},
+      {{"record", "--board", at}, 2, {"--out", "eye.rec"}},
+      {{"record", "--board", at, "--out", "x.rec", "--seconds", "-1"}, 2, {"--seconds", "-1"}},
+      {{"record", "--board", at, "--out", "x.rec", "--seconds", "1", "--frames", "3"}, 2, {"--frames", "--seconds"}},
+      {{"replay", rec + "x"}, 1, {rec + "x", "check the name"}},
+      {{"replay", at + "/board.toml"}, 1, {"board.toml", "is not a recording", "byte 0"}},
+      {{"replay", cut.string()}, 1, {cut.string(), "100 of"}},
+      {{"replay", flipped.string()}, 1, {flipped.string(), "CRC at byte"}},
+      {{"run", "--board", other.path().string(), "--replay", rec}, 1, {rec, "64 channels", "6400"}},
+      {{"run", "--board", at, "--pace", "fast"}, 2, {"--pace", "--replay"}},
+      {{"run", "--board", at, "--replay", rec, "--seed", "3"}, 2, {"--seed"}},
+      {{"run", "--board", at, "--replay", rec, "--record", "x.rec"}, 2, {"--record"}},
+      {{"run", "--board", at, "--replay", rec, "--sheet", "x.png"}, 2, {"--sheet", "--scene"}},
+      {{"run", "--board", at, "--replay", rec, "--deadline", "5"}, 2, {"--deadline", "--pace recorded"}},
+  };
+  for (const Case& each : cases) {
+    const Ended ended = test::compueye(each.arguments);
+    CAPTURE(ended.err);
+    CHECK(ended.exit_code == each.exit_code);
+    CHECK(lines(ended.err) == 1);
+    for (const std::string& said : each.said) CHECK(contains(ended.err, said));
+  }
+  CHECK(bytes_of(file) == bytes);
+}
+
+TEST_CASE("record and replay show how they are used") {
+  for (const std::string command : {"record", "replay"}) {
+    const Ended ended = test::compueye({command, "--help"});
+    CHECK(ended.exit_code == 0);
+    CHECK(contains(ended.out, "compueye " + command));
+    CHECK(contains(ended.out, "--json"));
+  }
+}
