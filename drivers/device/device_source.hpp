@@ -34,6 +34,9 @@ namespace compueye::device {
 /// The transport's open() has to look for the eye anew: after a re-plug it has another address. Another eye in its
 /// place is left alone.
 ///
+/// SampleBlock::config_id stays what it was at the start of a run: each stream of it has an id of its own, so that
+/// leftovers are told apart, but the configuration is the same, and the device's echo has shown it.
+///
 /// Accounting: every exposure from START on, in this run, is delivered or dropped for one reason. Frames that were on
 /// their way when a stream ended are dropped as transport_gap (as corrupt after babble, stopped after stop()), as many
 /// as the device says it made; StreamExtent says how many those are when it cannot be asked. While it is unplugged,
@@ -110,6 +113,7 @@ class DeviceSource final : public hal::SampleSource {
   bool has_status_ = false;
   bool clock_anew_ = false;  // the device's clock started anew since the last frame
 
+  std::uint32_t run_config_id_ = 0;  // what the frames of a run say, whatever stream they came in
   std::unique_ptr<StreamReader> reader_;
   std::vector<std::byte> chunk_;
   StreamExtent extent_;

@@ -51,6 +51,7 @@ hal::Result<Board> parse_board(std::string_view text, const std::string& file) {
     board.lines.emplace(entry.section + "." + entry.key, entry.line);
     find_key(entry.section, entry.key)->store(board, entry.value);
   }
+  if (board.source.simulated() && board.source.serial.empty()) board.source.serial = "SIM0001";
   if (auto consistent = check_consistency(board); !consistent) return tl::unexpected(consistent.error());
   return board;
 }

@@ -32,10 +32,12 @@ struct SensorSettings {
 };
 
 struct SourceSettings {
-  std::string kind;            ///< back end; "sim" is the only one yet
-  std::string serial;          ///< which device of that back end
+  std::string kind;            ///< back end: "sim", "usb" or "hid"
+  std::string serial;          ///< which device of that back end; empty, on a cable: the first one there is
   double frame_rate_hz = 0.0;  ///< > 0
-  int fifo_frames = 0;         ///< frames the device can hold before it loses one, >= 1
+  int fifo_frames = 0;         ///< frames a simulated device can hold before it loses one, >= 1
+
+  [[nodiscard]] bool simulated() const noexcept { return kind == "sim"; }
 };
 
 struct ReconstructionSettings {

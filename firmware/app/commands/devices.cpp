@@ -15,7 +15,10 @@ struct DevicesOptions {
 hal::Result<void> list_devices(const DevicesOptions& options) {
   const auto listed = list_boards(options.boards);
   if (!listed) return tl::unexpected(listed.error());
-  return print_text(options.json ? json_text(devices_json(*listed)) : devices_text(options.boards, *listed));
+  hal::MonotonicClock clock;
+  const AttachedEyes attached = list_attached_eyes(clock);
+  return print_text(options.json ? json_text(devices_json(attached, *listed))
+                                 : devices_text(attached, options.boards, *listed));
 }
 
 }  // namespace
@@ -26,7 +29,9 @@ void add_devices_command(CLI::App& app, Action& chosen) {
   command->add_option("--boards", options->boards, "folder that holds the boards (default: boards)");
   command->add_flag("--json", options->json, "print one object and nothing else on stdout");
   command->footer(
-      "Today these are the simulated eyes of the board files; a broken file is listed with what is wrong.\n\n"
+      "First the eyes that are attached on USB and HID, with what they say of themselves; an eye that another program\n"
+      "runs cannot be asked. Then the boards, which say what eye they expect; a broken file is listed with what is "
+      "wrong.\n\n"
       "Example: compueye devices --boards boards");
   command->callback([options, &chosen] { chosen = [options] { return list_devices(*options); }; });
 }

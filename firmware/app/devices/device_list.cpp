@@ -14,9 +14,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* not_built_in =
-    "Only simulated eyes can be listed: the back ends for USB, HID and SPI are not built into this version.\n";
 constexpr const char* simulated_firmware = "simulated";
+
+std::string firmware_of(const Board& board) {
+  return board.source.simulated() ? simulated_firmware : "-";
+}
+
+std::string serial_of(const Board& board) {
+  return board.source.serial.empty() ? "any" : board.source.serial;
+}
+
+std::string attached_text(const AttachedEyes& attached) {
+  Table table({{"attached", Align::left},
+               {"serial", Align::left},
+               {"firmware", Align::left},
+               {"ommatidia"},
+               {"bits"},
+               {"product", Align::left}});
+  std::string troubles;
+  for (const AttachedEye& eye : attached.eyes) {
+    if (!eye.description) {
+      table.add({eye.bus, visible_text(eye.serial), "-", "-", "-", visible_text(eye.product)});
+      troubles += "cannot be asked: " + visible_text(eye.description.error().text()) + "\n";
+      continue;
+    }
+    const hal::SourceDescription& d = *eye.description;
+    table.add({eye.bus, visible_text(d.serial), visible_text(d.firmware), std::to_string(d.channels),
+               std::to_string(d.bits), visible_text(eye.product)});
+  }
+  for (const std::string& note : attached.notes) troubles += "not looked at: " + visible_text(note) + "\n";
+  return (attached.eyes.empty() ? "no eye is attached on USB or HID\n" : table.text()) + troubles + "\n";
+}
 
 }  // namespace
 
@@ -38,8 +66,8 @@ hal::Result<std::vector<ListedBoard>> list_boards(const fs::path& boards) {
   return listed;
 }
 
-std::string devices_text(const fs::path& boards, const std::vector<ListedBoard>& listed) {
-  Table table({{"serial", Align::left},
+std::string devices_text(const AttachedEyes& attached, const fs::path& boards, const std::vector<ListedBoard>& listed) {
+  Table table({{"board's serial", Align::left},
                {"bus", Align::left},
                {"firmware", Align::left},
                {"ommatidia"},
@@ -53,16 +81,28 @@ std::string devices_text(const fs::path& boards, const std::vector<ListedBoard>&
       continue;
     }
     const Board& b = *each.board;
-    table.add({b.source.serial, b.source.kind, simulated_firmware, fmt::format("{} x {}", b.eye.rows, b.eye.columns),
+    table.add({serial_of(b), b.source.kind, firmware_of(b), fmt::format("{} x {}", b.eye.rows, b.eye.columns),
                fmt::format("{} x {}", b.object.rows, b.object.cols), significant(b.source.frame_rate_hz, 4),
                each.folder.string()});
   }
   std::string text = table.size() > 0 ? table.text() : "no board that can be read in '" + boards.string() + "'\n";
   if (!broken.empty()) text += "\n" + broken;
-  return text + "\n" + not_built_in;
+  return attached_text(attached) + text;
 }
 
-Json devices_json(const std::vector<ListedBoard>& listed) {
+Json json_of(const AttachedEye& eye) {
+  Json json{{"kind", eye.kind}, {"bus", eye.bus}, {"serial", eye.serial}, {"product", eye.product}};
+  if (eye.description) {
+    json["firmware"] = eye.description->firmware;
+    json["ommatidia"] = eye.description->channels;
+    json["bits"] = eye.description->bits;
+  } else {
+    json["error"] = json_of(eye.description.error());
+  }
+  return json;
+}
+
+Json devices_json(const AttachedEyes& attached, const std::vector<ListedBoard>& listed) {
   Json devices = Json::array(), broken = Json::array();
   for (const ListedBoard& each : listed) {
     if (!each.board) {
@@ -74,7 +114,7 @@ Json devices_json(const std::vector<ListedBoard>& listed) {
     const Board& b = *each.board;
     devices.push_back({{"serial", b.source.serial},
                        {"bus", b.source.kind},
-                       {"firmware", simulated_firmware},
+                       {"firmware", firmware_of(b)},
                        {"ommatidia", b.eye.ommatidia()},
                        {"rows", b.eye.rows},
                        {"columns", b.eye.columns},
@@ -84,10 +124,11 @@ Json devices_json(const std::vector<ListedBoard>& listed) {
                        {"name", b.name},
                        {"board", each.folder.string()}});
   }
-  return {{"devices", std::move(devices)},
-          {"broken", std::move(broken)},
-          {"back_ends", {"sim"}},
-          {"back_ends_not_built_in", {"usb", "hid", "spi"}}};
+  Json eyes = Json::array();
+  for (const AttachedEye& eye : attached.eyes) eyes.push_back(json_of(eye));
+  return {{"attached", std::move(eyes)},        {"notes", attached.notes},
+          {"devices", std::move(devices)},      {"broken", std::move(broken)},
+          {"back_ends", {"sim", "usb", "hid"}}, {"back_ends_not_built_in", {"spi"}}};
 }
 
 }  // namespace compueye::firmware

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "firmware/app/board/board.hpp"
+#include "firmware/app/devices/attached_eyes.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "hal/result.hpp"
 
@@ -19,7 +20,8 @@ struct ListedBoard {
 /// Every folder below `boards` that holds a board.toml, by name. Errors: not_found, io.
 [[nodiscard]] hal::Result<std::vector<ListedBoard>> list_boards(const std::filesystem::path& boards);
 
-[[nodiscard]] std::string devices_text(const std::filesystem::path& boards, const std::vector<ListedBoard>& listed);
-[[nodiscard]] Json devices_json(const std::vector<ListedBoard>& listed);
+[[nodiscard]] std::string devices_text(const AttachedEyes& attached, const std::filesystem::path& boards,
+                                       const std::vector<ListedBoard>& listed);
+[[nodiscard]] Json devices_json(const AttachedEyes& attached, const std::vector<ListedBoard>& listed);
 
 }  // namespace compueye::firmware

@@ -8,6 +8,7 @@
 
 #include "drivers/recording/recording_source.hpp"
 #include "firmware/app/board/board.hpp"
+#include "firmware/app/eye/board_source.hpp"
 #include "firmware/app/eye/scene_choice.hpp"
 #include "firmware/app/eye/simulated_board.hpp"
 #include "firmware/app/recording/recorded_with.hpp"
@@ -118,6 +119,22 @@ Result<void> report(const RecordOptions& options, const Board& board, const std:
   return print_text(text);
 }
 
+Result<std::unique_ptr<hal::SampleSource>> eye_to_record(const RecordOptions& options, const Board& board,
+                                                         sim::Scene scene, hal::Clock& clock) {
+  if (!board.source.simulated()) {
+    if (auto ok = need(!options.lossless, "--lossless", "cannot be asked of an eye on a cable, which waits for nobody");
+        !ok) {
+      return tl::unexpected(std::move(ok.error()));
+    }
+    return attached_eye(board, clock);
+  }
+  auto settings = simulated_eye_settings(board, std::move(scene), static_cast<std::uint64_t>(options.seed));
+  if (!options.lossless) settings.frame_rate_hz = board.source.frame_rate_hz;
+  auto eye = sim::SimulatedEye::create(std::move(settings), clock);
+  if (!eye) return tl::unexpected(std::move(eye.error()));
+  return std::unique_ptr<hal::SampleSource>(std::move(*eye));
+}
+
 }  // namespace
 
 Result<void> RecordOptions::check() const {
@@ -148,14 +165,12 @@ Result<void> record(const RecordOptions& options) {
   auto scene =
       choose_scene(*board, {options.scene, static_cast<std::uint64_t>(options.scene_seed), options.scene_distance_mm});
   if (!scene) return tl::unexpected(std::move(scene.error()));
-  const std::string scene_name = scene->name;
+  const std::string scene_name = board->source.simulated() ? scene->name : "an unknown scene";
   const Goal goal = goal_of(options, *board);
   const StopSignals signals;
   hal::MonotonicClock clock;
 
-  auto eye_settings = simulated_eye_settings(*board, std::move(*scene), static_cast<std::uint64_t>(options.seed));
-  if (!options.lossless) eye_settings.frame_rate_hz = board->source.frame_rate_hz;
-  auto eye = sim::SimulatedEye::create(std::move(eye_settings), clock);
+  auto eye = eye_to_record(options, *board, std::move(*scene), clock);
   if (!eye) return tl::unexpected(std::move(eye.error()));
   recording::RecordingSettings settings;
   settings.path = options.out;

@@ -11,6 +11,9 @@
 namespace compueye::firmware {
 
 std::string RecordedWith::text(const Board& board) const {
+  if (!board.source.simulated()) {
+    return fmt::format("board = {}\ndistance_mm = {}\n", visible_text(board.name), board.object.distance_mm);
+  }
   return fmt::format("board = {}\ndistance_mm = {}\nscene = {}\nscene_seed = {}\nseed = {}\n", visible_text(board.name),
                      board.object.distance_mm, visible_text(scene), scene_seed, seed);
 }

@@ -10,7 +10,7 @@
 
 namespace compueye::firmware {
 
-/// What a recording's header says, for people, about a simulated eye: lines "key = value".
+/// What a recording's header says, for people: lines "key = value". Of an eye on a cable nobody knows the scene.
 struct RecordedWith {
   std::string scene;
   std::int64_t scene_seed = 0;

@@ -91,8 +91,13 @@ class RunSession {
   void note(const std::string& sentence);
   void fill_figures();
   [[nodiscard]] PipelineSettings pipeline_settings() const;
+  /// What is in front of an eye on a cable is known only when it is named.
+  [[nodiscard]] bool knows_scene() const {
+    return options_.knows_scene() && (board_.source.simulated() || !options_.scene.empty());
+  }
   [[nodiscard]] std::uint64_t frames() const {
-    return static_cast<std::uint64_t>(options_.frames.value_or(options_.replays() ? 0 : board_.scene.frames_per_scene));
+    return static_cast<std::uint64_t>(
+        options_.frames.value_or(options_.replays() || !board_.source.simulated() ? 0 : board_.scene.frames_per_scene));
   }
 
   const RunOptions& options_;
@@ -125,6 +130,10 @@ Result<void> RunSession::prepare() {
   if (!options_.record.empty()) {
     if (auto checked = check_new_recording(options_.record); !checked) return checked;
   }
+  if (!options_.sheet.empty() && !knows_scene()) {
+    return hal::fail(ErrorCode::usage, "--sheet",
+                     "needs --scene with an eye on a cable: it compares the picture with what the eye looks at");
+  }
   auto scene = choose_scene(
       board_, {options_.scene, static_cast<std::uint64_t>(options_.scene_seed), options_.scene_distance_mm});
   if (!scene) return tl::unexpected(std::move(scene.error()));
@@ -132,7 +141,7 @@ Result<void> RunSession::prepare() {
   auto truth = sim::scene_truth(scene_, board_.object);
   if (!truth) return tl::unexpected(std::move(truth.error()));
   truth_ = std::move(*truth);
-  report_.scene = options_.knows_scene() ? scene_.name : "not known";
+  report_.scene = knows_scene() ? scene_.name : "not known";
   report_.seed = options_.seed;
   report_.distance_mm = board_.object.distance_mm;
   report_.lossless = options_.waits_for_frames();
@@ -147,7 +156,7 @@ Result<void> RunSession::make_eye() {
       progress.update(what, done, total);
       return !signals_.requested().load(std::memory_order_relaxed);
     };
-    progress.update(options_.replays() ? "recording" : "simulated eye", 0.0, 0.0);
+    progress.update(options_.replays() ? "recording" : board_.source.simulated() ? "simulated eye" : "eye", 0.0, 0.0);
     auto made = RunSource::make(options_, board_, scene_, frames(), clock_);
     if (!made) return tl::unexpected(std::move(made.error()));
     source_ = std::move(*made);
@@ -302,7 +311,7 @@ Result<void> RunSession::compare_or_note() {
 }
 
 Result<void> RunSession::compare() {
-  if (!options_.knows_scene()) return {};
+  if (!knows_scene()) return {};
   if (auto measured = measure_quality(); !measured) return measured;
   if (keeper_->delivered() == 0) return {};
   auto conventional = conventional_picture(board_, scene_, static_cast<std::uint64_t>(options_.seed));

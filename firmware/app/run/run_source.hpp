@@ -15,12 +15,13 @@
 
 namespace compueye::firmware {
 
-/// Where a run's frames come from: the board's simulated eye or a recording; and, if asked, the file they go to
-/// besides.
+/// Where a run's frames come from: the board's eye, simulated or on a cable, or a recording; and, if asked, the file
+/// they go to besides.
 class RunSource {
  public:
-  /// `frames`: how many are wanted, 0 = all. `clock` must outlive it. Errors: those of SimulatedEye::create() and
-  /// ReplaySource::open(); mismatch (a recording of another number of channels or depth than the board's).
+  /// `frames`: how many are wanted, 0 = all. `clock` must outlive it. Errors: those of SimulatedEye::create(),
+  /// attached_eye() and ReplaySource::open(); mismatch (a recording of another number of channels or depth than the
+  /// board's); usage (--lossless with an eye on a cable).
   [[nodiscard]] static hal::Result<RunSource> make(const RunOptions& options, const Board& board,
                                                    const sim::Scene& scene, std::uint64_t frames, hal::Clock& clock);
 
