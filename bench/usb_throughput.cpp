@@ -1,6 +1,6 @@
 // How fast frames of 13 KiB come through the real libusb, the USB transport and the decoder, from a device that always
-// has more. The kernel is missing: a shim in this program answers libusb's ioctls (bench/usbfs_shim.hpp), so that the
-// figures are those of the code above it. Run it under umockdev-wrapper, which shows libusb the device.
+// has more. The kernel is missing: a shim in this program answers libusb's ioctls (tests/hil/usbfs_shim.hpp), so that
+// the figures are those of the code above it. Run it under umockdev-wrapper, which shows libusb the device.
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -20,7 +20,6 @@
 
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
-#include "bench/usbfs_shim.hpp"
 #include "drivers/protocol/frame_assembler.hpp"
 #include "drivers/protocol/packet_encoder.hpp"
 #include "drivers/protocol/packet_stream.hpp"
@@ -30,6 +29,7 @@
 #include "hal/clock.hpp"
 #include "tests/hil/emulated_usbfs.hpp"
 #include "tests/hil/umockdev_entries.hpp"
+#include "tests/hil/usbfs_shim.hpp"
 
 using namespace compueye;
 
@@ -188,7 +188,7 @@ hal::Result<Measured> measure() {
   TirelessDevice device;
   hil::EmulatedUsbfs file(device);
   const hil::UsbEntry entry;
-  bench::shim_usbfs(entry.device_file(), file);
+  hil::shim_usbfs(entry.device_file(), file);
   GError* error = nullptr;
   if (!umockdev_testbed_add_from_string(testbed.get(), entry.text().c_str(), &error)) {
     return hal::fail(hal::ErrorCode::io, "umockdev", error->message);

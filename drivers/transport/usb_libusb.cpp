@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "drivers/protocol/requests.hpp"
+#include "drivers/transport/usb_control.hpp"
 #include "drivers/transport/usb_error.hpp"
 #include "hal/clock.hpp"
 
@@ -78,6 +79,7 @@ struct UsbTransport::Connection {
   Connection& operator=(const Connection&) = delete;
   ~Connection() {
     ring.reset();
+    control.reset();
     if (handle != nullptr) {
       if (claimed >= 0) libusb_release_interface(handle, claimed);
       libusb_close(handle);
@@ -88,6 +90,7 @@ struct UsbTransport::Connection {
   libusb_context* context = nullptr;
   libusb_device_handle* handle = nullptr;
   int claimed = -1;
+  std::unique_ptr<UsbControl> control;
   std::unique_ptr<UsbTransferRing> ring;
 };
 
@@ -139,6 +142,9 @@ hal::Result<void> UsbTransport::connect(Connection& connection) {
   const std::size_t packets = (settings_.transfer_bytes + endpoint->max_packet - 1) / endpoint->max_packet;
   const std::size_t transfer_bytes = packets * endpoint->max_packet;
   if (auto checked = check(settings_, transfer_bytes); !checked) return checked;
+  auto control = UsbControl::create(connection.handle);
+  if (!control) return tl::unexpected(std::move(control.error()));
+  connection.control = std::move(*control);
   auto ring = UsbTransferRing::start(
       {connection.context, connection.handle, endpoint->address, settings_.transfers, transfer_bytes, place});
   if (!ring) return tl::unexpected(std::move(ring.error()));
@@ -180,11 +186,8 @@ hal::Result<std::size_t> UsbTransport::control(std::uint8_t request, std::span<c
   };
   const auto type = static_cast<std::uint8_t>(static_cast<unsigned>(LIBUSB_REQUEST_TYPE_VENDOR) |
                                               static_cast<unsigned>(in ? LIBUSB_ENDPOINT_IN : LIBUSB_ENDPOINT_OUT));
-  // libusb only reads the data of a request that goes out.
-  auto* const data = in ? reinterpret_cast<unsigned char*>(reply.data())
-                        : reinterpret_cast<unsigned char*>(const_cast<std::byte*>(payload.data()));
-  const int bytes = libusb_control_transfer(connection_->handle, type, request, word(0), word(2), data,
-                                            static_cast<std::uint16_t>(in ? reply.size() : payload.size()), timeout_ms);
+  const int bytes = connection_->control->transfer({type, request, word(0), word(2)},
+                                                   in ? std::span<const std::byte>() : payload, reply, timeout_ms);
   if (bytes == LIBUSB_ERROR_TIMEOUT) return hal::timed_out();
   if (bytes < 0) {
     return tl::unexpected(usb_error(bytes, description_.serial, "request " + std::to_string(request)));

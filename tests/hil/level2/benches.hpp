@@ -31,6 +31,10 @@ inline protocol::EmulatorSettings eye(const std::string& serial, int channels = 
   return settings;
 }
 
+inline protocol::EmulatorSettings hid_eye(const std::string& serial, int channels = 64) {
+  return eye(serial, channels, protocol::EmulatedBus::hid);
+}
+
 inline transport::UsbSettings with_serial(std::string serial) {
   transport::UsbSettings settings;
   settings.serial = std::move(serial);

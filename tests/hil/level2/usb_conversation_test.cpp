@@ -7,6 +7,7 @@
 #include "drivers/transport/usb_hotplug.hpp"
 #include "drivers/transport/usb_libusb.hpp"
 #include "tests/hil/level2/benches.hpp"
+#include "tests/memory/allocation_counter.hpp"
 
 namespace compueye::hil {
 namespace {
@@ -108,6 +109,25 @@ TEST_CASE("usb: transfers in flight stay within their bounds, whatever the reade
   CHECK(counters.most_waiting <= 8 + 1);  // and a request
   CHECK(counters.most_waiting_bytes <= 8 * 5120 + 8 + 4096);
   CHECK(bench.transport.counters().most_in_flight == 8);
+}
+
+TEST_CASE("usb: reading does not use the heap, with and without data") {
+  HIL_TESTBED(testbed);
+  UsbBench bench(testbed, eye("CE-1", 300));
+  bench.host.frame_rate_mhz = 400'000;
+  REQUIRE(bench.host.start());
+  bench.check_frames(0, 5);
+  int full = 0, timeouts = 0;
+  const auto before = tests::heap_use_of_this_thread();
+  for (int k = 0; k < 200; ++k) {
+    const auto got = bench.read(k % 2 == 0 ? 50 : 0);
+    full += got ? 1 : 0;
+    timeouts += !got && got.error().code == hal::ErrorCode::timeout ? 1 : 0;
+  }
+  CHECK((tests::heap_use_of_this_thread() - before).calls() == 0);
+  CHECK(full >= 100);
+  CHECK(timeouts > 0);
+  CHECK(full + timeouts == 200);
 }
 
 TEST_CASE("usb: settings beyond their limits are refused before the device is touched") {

@@ -1,4 +1,4 @@
-#include "bench/usbfs_shim.hpp"
+#include "tests/hil/usbfs_shim.hpp"
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -14,7 +14,7 @@
 #include <limits>
 #include <mutex>
 
-namespace compueye::bench {
+namespace compueye::hil {
 namespace {
 
 /// The device file as poll() sees it: an eventfd. Its counter at the maximum: not writable, so nothing to reap; at 0:
@@ -41,8 +41,9 @@ class PolledFile {
 
 struct Shim {
   std::string path;
-  hil::EmulatedUsbfs* file = nullptr;
+  EmulatedUsbfs* file = nullptr;
   std::atomic<int> fd{-1};
+  std::mutex closing;  // the number may mean another file afterwards
   PolledFile polled;
 };
 
@@ -66,20 +67,26 @@ int open_device() {
 
 }  // namespace
 
-void shim_usbfs(const std::string& path, hil::EmulatedUsbfs& file) {
+void shim_usbfs(const std::string& path, EmulatedUsbfs& file) {
   shim().path = path;
   shim().file = &file;
 }
 
-}  // namespace compueye::bench
+void refresh_shim() {
+  const bool ready = shim().file->ready();
+  const std::lock_guard lock(shim().closing);
+  if (const int fd = shim().fd; fd >= 0) shim().polled.set_ready(fd, ready);
+}
 
-using compueye::bench::next;
-using compueye::bench::shim;
+}  // namespace compueye::hil
+
+using compueye::hil::next;
+using compueye::hil::shim;
 
 extern "C" {
 
 int open(const char* path, int flags, ...) {
-  if (shim().file != nullptr && shim().path == path) return compueye::bench::open_device();
+  if (shim().file != nullptr && shim().path == path) return compueye::hil::open_device();
   static const auto real = next<int (*)(const char*, int, ...)>("open");
   if ((flags & O_CREAT) == 0) return real(path, flags);
   va_list arguments;
@@ -110,8 +117,10 @@ int ioctl(int fd, unsigned long request, ...) noexcept {
 }
 
 int close(int fd) {
-  int ours = fd;
-  if (fd >= 0) shim().fd.compare_exchange_strong(ours, -1);
+  if (fd >= 0 && fd == shim().fd) {
+    const std::lock_guard lock(shim().closing);
+    shim().fd = -1;
+  }
   static const auto real = next<int (*)(int)>("close");
   return real(fd);
 }
