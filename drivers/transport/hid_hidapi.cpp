@@ -115,7 +115,10 @@ hal::Result<std::size_t> HidTransport::read(std::span<std::byte> into, std::int6
     const int bytes = hid_read_timeout(connection_->input.get(), reinterpret_cast<unsigned char*>(into.data()),
                                        protocol::hid_report_bytes, wait_ms);
     if (bytes > 0) return static_cast<std::size_t>(bytes);
-    if (bytes < 0 && errno != EINTR) return tl::unexpected(failure(errno, "reading a report"));
+    // Without an error number it was poll() that saw the device hang up.
+    if (bytes < 0 && errno != EINTR) {
+      return tl::unexpected(failure(errno == 0 ? ENODEV : errno, "reading a report"));
+    }
     if (wait_ms == 0) return hal::timed_out();
   }
 }

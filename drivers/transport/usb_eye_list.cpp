@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 #include <utility>
 
@@ -33,26 +34,40 @@ std::string address_of(libusb_device* device) {
   return text.data();
 }
 
-/// Empty when the device has none or does not answer; never longer than a string descriptor can be.
-std::string text_of(libusb_device_handle* handle, std::uint8_t index) {
+constexpr std::size_t most_text = 126;  // characters of a string descriptor
+
+/// What Linux noted of the device when it came, "serial" or "product"; empty where there is no such note.
+std::string noted_text(const std::string& bus, const char* name) {
+  std::ifstream file("/sys/bus/usb/devices/" + bus.substr(bus.find(' ') + 1) + "/" + name);
+  std::string text(most_text, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  text.resize(std::min(text.size(), text.find('\n')));
+  return text;
+}
+
+/// Empty when the device has none or does not answer.
+std::string asked_text(libusb_device_handle* handle, std::uint8_t index) {
   if (index == 0) return {};
-  std::array<unsigned char, 256> text{};
+  std::array<unsigned char, 2 * most_text> text{};
   const int bytes = libusb_get_string_descriptor_ascii(handle, index, text.data(), static_cast<int>(text.size()));
   return bytes <= 0 ? std::string() : std::string(text.begin(), text.begin() + bytes);
 }
 
-/// Opens `device` and fills in what only an open device tells. An eye that cannot be opened has the reason.
+/// Opens `device` and fills in who it is. An eye that cannot be opened has the reason.
 Handle look_at(libusb_device* device, const libusb_device_descriptor& descriptor, UsbEye& eye) {
   eye.bus = bus_of(device);
   eye.address = address_of(device);
+  eye.serial = noted_text(eye.bus, "serial");
+  eye.product = noted_text(eye.bus, "product");
   libusb_device_handle* handle = nullptr;
   if (const int code = libusb_open(device, &handle); code != LIBUSB_SUCCESS) {
     eye.refusal = usb_error(code, eye.bus, "opening the eye (/dev/bus/usb/" + eye.address + ")");
     return nullptr;
   }
   Handle opened(handle);
-  eye.serial = text_of(handle, descriptor.iSerialNumber);
-  eye.product = text_of(handle, descriptor.iProduct);
+  if (eye.serial.empty()) eye.serial = asked_text(handle, descriptor.iSerialNumber);
+  if (eye.product.empty()) eye.product = asked_text(handle, descriptor.iProduct);
   return opened;
 }
 
@@ -99,20 +114,19 @@ hal::Result<OpenedUsbEye> open_usb_eye(libusb_context* context, protocol::UsbIde
   hal::Error refusal;
   std::string others;
   auto looked = for_each_eye(context, identity, [&](Handle handle, UsbEye eye) {
-    if (!eye.reachable()) {
-      if (refusal.place.empty()) refusal = eye.refusal;
-      return false;
-    }
-    if (!serial.empty() && eye.serial != serial) {
+    // One that may not be opened and whose serial nobody knows could be the one asked for.
+    const bool could_be = serial.empty() || eye.serial == serial || (eye.serial.empty() && !eye.reachable());
+    if (!could_be) {
       others += (others.empty() ? "" : ", ") + eye.serial + " (" + eye.bus + ")";
-      return false;
+    } else if (!eye.reachable()) {
+      if (refusal.place.empty()) refusal = eye.refusal;
+    } else {
+      found = {handle.release(), std::move(eye)};
     }
-    found = {handle.release(), std::move(eye)};
-    return true;
+    return found.handle != nullptr;
   });
   if (!looked) return tl::unexpected(std::move(looked.error()));
   if (found.handle != nullptr) return found;
-  // One of those that may not be opened could be the one asked for.
   if (!refusal.place.empty()) return tl::unexpected(std::move(refusal));
   const std::string wanted = serial.empty() ? "no eye" : "no eye with serial '" + serial + "'";
   return hal::fail(hal::ErrorCode::not_found, serial.empty() ? "usb" : serial,

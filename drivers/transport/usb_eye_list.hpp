@@ -17,7 +17,7 @@ namespace compueye::transport {
 struct UsbEye {
   std::string bus;      ///< "usb 1-4": bus and ports, the same after every plugging-in
   std::string address;  ///< "001/007": of the device file, another after every plugging-in
-  std::string serial;   ///< empty when the eye could not be opened
+  std::string serial;   ///< as the system noted it when the eye came, else asked for; empty when neither worked
   std::string product;  ///< likewise
   hal::Error refusal;   ///< why it could not be opened; an empty place when it could
   [[nodiscard]] bool reachable() const noexcept { return refusal.place.empty(); }
@@ -28,8 +28,9 @@ struct UsbEye {
 [[nodiscard]] hal::Result<std::vector<UsbEye>> list_usb_eyes(
     protocol::UsbIdentity identity = protocol::usb_eye_identity);
 
-/// For usb_libusb.cpp: opens the eye with this serial, or with an empty one the first. Errors: not_found (names the
-/// serials that are there), io (it is there and may not be opened).
+/// For usb_libusb.cpp: opens the eye with this serial, or with an empty one the first. An eye whose requests hang is
+/// found too, by what the system noted, so that a reset can cure it. Errors: not_found (names the serials that are
+/// there), io (it is there and may not be opened).
 struct OpenedUsbEye {
   libusb_device_handle* handle = nullptr;
   UsbEye eye;

@@ -62,7 +62,12 @@ UsbDeviceModel::Transfer EmulatedUsbEye::control(const Setup& setup, std::span<s
 UsbDeviceModel::Transfer EmulatedUsbEye::standard(const Setup& setup, std::span<std::byte> data) {
   const unsigned kind = setup.value >> 8U, index = setup.value & 0xFFU;
   if (setup.request != USB_REQ_GET_DESCRIPTOR || kind != USB_DT_STRING) return {Outcome::stalled, 0};
-  return when_there([&](DeviceEmulator& device, std::int64_t) -> Transfer {
+  return when_there([&](DeviceEmulator& device, std::int64_t now_ns) -> Transfer {
+    // The emulator knows only requests of the protocol; a firmware that answers none answers this one neither.
+    std::array<std::byte, 4> nonce{};
+    std::array<std::byte, protocol::PingReply::bytes> reply{};
+    const auto ping = device.control(now_ns, protocol::number(Request::ping), nonce, reply);
+    if (ping.outcome == DeviceEmulator::Outcome::nothing) return {};
     std::vector<std::byte> bytes{std::byte{0}, std::byte{USB_DT_STRING}};
     const std::string text = index == product_string ? "emulated eye" : index == serial_string ? device.serial() : "";
     if (index == 0) {

@@ -45,7 +45,9 @@ std::string UsbEntry::text() const {
          padded("%03u", static_cast<unsigned>(address)) + "\nE: DEVNAME=" + device_file() +
          "\nE: MAJOR=189\nE: MINOR=" + std::to_string(address - 1) +
          "\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=" + std::to_string(address) +
-         "\\n\nA: speed=480\\n\nH: descriptors=" + hex_of(usb_descriptors(identity.vendor, identity.product)) + "\n";
+         "\\n\nA: speed=480\\n\n" +
+         (serial.empty() ? "" : "A: product=emulated eye\\n\nA: serial=" + serial + "\\n\n") +
+         "H: descriptors=" + hex_of(usb_descriptors(identity.vendor, identity.product)) + "\n";
 }
 
 std::vector<std::string> HidEntry::sys_paths() const {

@@ -16,6 +16,7 @@ struct UsbEntry {
   int port = 4;
   int address = 1;
   protocol::UsbIdentity identity = protocol::usb_eye_identity;
+  std::string serial = {};  ///< as Linux notes it; empty: it did not
 
   [[nodiscard]] std::string sys_path() const;     ///< "/sys/devices/..."
   [[nodiscard]] std::string device_file() const;  ///< "/dev/bus/usb/001/004"

@@ -43,6 +43,7 @@ struct Shim {
   std::string path;
   EmulatedUsbfs* file = nullptr;
   std::atomic<int> fd{-1};
+  std::atomic<int> open_error{0};
   std::mutex closing;  // the number may mean another file afterwards
   PolledFile polled;
 };
@@ -58,6 +59,10 @@ Function next(const char* name) {
 }
 
 int open_device() {
+  if (const int error = shim().open_error; error != 0) {
+    errno = error;
+    return -1;
+  }
   const int fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   shim().polled.opened();
   shim().polled.set_ready(fd, false);
@@ -70,6 +75,10 @@ int open_device() {
 void shim_usbfs(const std::string& path, EmulatedUsbfs& file) {
   shim().path = path;
   shim().file = &file;
+}
+
+void refuse_to_open(int error) {
+  shim().open_error = error;
 }
 
 void refresh_shim() {

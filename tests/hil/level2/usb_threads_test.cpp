@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <thread>
 #include <vector>
@@ -32,6 +33,7 @@ class ShimmedEye {
         eye_(cable),
         file(eye_),
         host(transport, clock, protocol::EmulatedBus::usb, busy_eye().descriptor) {
+    entry.serial = cable.serial();
     shim_usbfs(entry.device_file(), file);
     testbed_.add(entry.text());
     ticker_ = std::thread([this] {
@@ -160,6 +162,38 @@ TEST_CASE("a pulled plug ends reading and asking, and closing ends everything") 
   CHECK(read == hal::ErrorCode::disconnected);
   eye.transport.close();
   CHECK(eye.file.waiting() == 0);
+}
+
+TEST_CASE("an eye that may not be opened is listed with its serial, and the refusal names the udev rule") {
+  SKIP_WITHOUT_UMOCKDEV();
+  ShimmedEye eye;
+  refuse_to_open(EACCES);
+  const auto eyes = transport::list_usb_eyes();
+  REQUIRE(eyes);
+  REQUIRE(eyes->size() == 1);
+  CHECK(eyes->at(0).serial == eye.cable.serial());
+  CHECK_FALSE(eyes->at(0).reachable());
+  transport::UsbSettings settings;
+  settings.serial = eye.cable.serial();
+  transport::UsbTransport refused(settings);
+  const auto opened = refused.open();
+  REQUIRE_FALSE(opened);
+  CHECK(opened.error().code == hal::ErrorCode::io);
+  CHECK(opened.error().text().find("70-compueye.rules") != std::string::npos);
+  settings.serial = "OTHER";
+  transport::UsbTransport absent(settings);
+  CHECK(absent.open().error().code == hal::ErrorCode::not_found);
+  refuse_to_open(0);
+  CHECK(refused.open());
+}
+
+TEST_CASE("an eye whose control endpoint hangs is found by its noted serial, and opening it resets it") {
+  SKIP_WITHOUT_UMOCKDEV();
+  ShimmedEye eye;
+  eye.cable.inject({.kind = protocol::FaultKind::control_silence, .duration_ns = 0});
+  REQUIRE(eye.host.start());
+  CHECK(eye.transport.describe().serial == eye.cable.serial());
+  CHECK(eye.host.frame());
 }
 
 }  // namespace
