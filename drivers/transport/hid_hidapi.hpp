@@ -30,6 +30,8 @@ struct HidSettings {
 class HidTransport final : public hal::ByteTransport {
  public:
   explicit HidTransport(HidSettings settings = {});
+  HidTransport(const HidTransport&) = delete;
+  HidTransport& operator=(const HidTransport&) = delete;
   ~HidTransport() override;
 
   /// Device file and serial after open(); max_packet is 64.

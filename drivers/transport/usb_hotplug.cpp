@@ -62,6 +62,9 @@ class PollingHotplug final : public UsbHotplug {
 
 class EventHotplug final : public UsbHotplug {
  public:
+  EventHotplug() = default;
+  EventHotplug(const EventHotplug&) = delete;
+  EventHotplug& operator=(const EventHotplug&) = delete;
   ~EventHotplug() override {
     if (context_ == nullptr) return;
     if (registered_) libusb_hotplug_deregister_callback(context_, callback_);

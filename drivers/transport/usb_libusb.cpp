@@ -126,9 +126,6 @@ hal::Result<void> UsbTransport::connect(Connection& connection) {
   connection.handle = opened->handle;
   const std::string place = opened->eye.bus + " (" + opened->eye.serial + ")";
 
-  if (const int code = libusb_reset_device(connection.handle); code != LIBUSB_SUCCESS) {
-    return tl::unexpected(usb_error(code, place, "resetting the eye"));
-  }
   const auto endpoint = find_stream_endpoint(libusb_get_device(connection.handle));
   if (!endpoint) {
     return hal::fail(hal::ErrorCode::unsupported, place,
@@ -138,6 +135,10 @@ hal::Result<void> UsbTransport::connect(Connection& connection) {
     return tl::unexpected(usb_error(code, place, "claiming the stream"));
   }
   connection.claimed = endpoint->interface_number;
+  // Only now that it is ours: a reset would end another program's stream. libusb claims it again.
+  if (const int code = libusb_reset_device(connection.handle); code != LIBUSB_SUCCESS) {
+    return tl::unexpected(usb_error(code, place, "resetting the eye"));
+  }
 
   const std::size_t packets = (settings_.transfer_bytes + endpoint->max_packet - 1) / endpoint->max_packet;
   const std::size_t transfer_bytes = packets * endpoint->max_packet;

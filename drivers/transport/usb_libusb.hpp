@@ -40,6 +40,8 @@ struct UsbSettings {
 class UsbTransport final : public hal::ByteTransport {
  public:
   explicit UsbTransport(UsbSettings settings = {});
+  UsbTransport(const UsbTransport&) = delete;
+  UsbTransport& operator=(const UsbTransport&) = delete;
   ~UsbTransport() override;
 
   /// Bus and serial after open(); max_packet of the endpoint.

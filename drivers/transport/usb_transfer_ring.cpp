@@ -95,7 +95,7 @@ void UsbTransferRing::run() {
   drain();
 }
 
-void UsbTransferRing::handle_events() {
+void UsbTransferRing::handle_events() const {
   timeval wait{0, most_event_wait_us};
   if (libusb_handle_events_timeout_completed(settings_.context, &wait, nullptr) != LIBUSB_SUCCESS) {
     std::this_thread::sleep_for(after_event_error);
@@ -257,6 +257,7 @@ hal::Result<std::size_t> UsbTransferRing::read(std::span<std::byte> into, std::i
       error = error_of(gone_ ? LIBUSB_TRANSFER_NO_DEVICE : LIBUSB_TRANSFER_STALL);
     } else if (copied == 0 && submit_error_ != LIBUSB_SUCCESS && in_flight_ == 0) {
       error = usb_error(submit_error_, settings_.place, "reading the stream");
+      error->code = hal::ErrorCode::io;
     }
     const bool wake = wants_submission();
     if (copied > 0 || error || wake) {

@@ -78,12 +78,12 @@ class UsbTransferRing {
   explicit UsbTransferRing(Settings settings);
   [[nodiscard]] bool allocate();
   void run();
-  void handle_events();
+  void handle_events() const;
   int submit_free();
   void cancel_all();
   void drain();
   void begin_anew();
-  void completed(Slot& slot) noexcept;
+  void completed(Slot& done) noexcept;
   static void on_completion(libusb_transfer* transfer) noexcept;
   [[nodiscard]] Slot& slot(std::uint64_t count) { return slots_[count % slots_.size()]; }
   std::size_t copy_out(std::span<std::byte> into) noexcept;

@@ -47,6 +47,7 @@ EmulatedUsbfs::Answer EmulatedUsbfs::ioctl(unsigned long request, void* argument
     case USBDEVFS_GET_SPEED:
       return {high_speed, 0};
     case USBDEVFS_CLAIMINTERFACE:
+    case USBDEVFS_DISCONNECT_CLAIM:
       return held_ ? Answer{-1, EBUSY} : Answer{};
     case USBDEVFS_RELEASEINTERFACE:
     case USBDEVFS_SETCONFIGURATION:

@@ -78,6 +78,40 @@ struct Bench {
 using UsbBench = Bench<UsbPort, transport::UsbTransport, transport::UsbSettings, protocol::EmulatedBus::usb>;
 using HidBench = Bench<HidPort, transport::HidTransport, transport::HidSettings, protocol::EmulatedBus::hid>;
 
+/// The eye `serial`, which the bench asks for, is pulled out of a running stream; `other` comes in its place, then it
+/// comes back.
+template <class AnyBench>
+void check_unplugging(AnyBench& bench, const std::string& serial, const std::string& other) {
+  REQUIRE(bench.host.start());
+  bench.check_frames(0, 20);
+  bench.port.unplug(other);
+  hal::Result<std::size_t> got = std::size_t{0};
+  for (int k = 0; got && k < 1000; ++k) got = bench.read(500);
+  REQUIRE_FALSE(got);
+  CHECK(got.error().code == hal::ErrorCode::disconnected);
+  CHECK(bench.read(10).error().code == hal::ErrorCode::disconnected);
+  CHECK(bench.host.status().error().code == hal::ErrorCode::disconnected);
+  CHECK(bench.transport.open().error().code == hal::ErrorCode::not_found);
+  CHECK(bench.read(10).error().code == hal::ErrorCode::usage);
+
+  bench.port.plug();
+  AnyBench::wait_for_boot();
+  const auto refused = bench.transport.open();
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == hal::ErrorCode::not_found);
+  CHECK(refused.error().text().find(other) != std::string::npos);
+
+  bench.port.unplug(serial);
+  bench.port.plug();
+  AnyBench::wait_for_boot();
+  const std::int64_t begin_ns = bench.clock.now_ns();
+  REQUIRE(bench.host.start());
+  const auto block = bench.host.frame();
+  REQUIRE(block);
+  CHECK(bench.host.right(*block, 0));
+  CHECK(bench.clock.now_ns() - begin_ns < 2'000'000'000);
+}
+
 }  // namespace compueye::hil
 
 /// The testbed of a test case, or its end when umockdev cannot work here.
