@@ -46,6 +46,18 @@ std::string attached_text(const AttachedEyes& attached) {
   return (attached.eyes.empty() ? "no eye is attached on USB or HID\n" : table.text()) + troubles + "\n";
 }
 
+Json json_of(const AttachedEye& eye) {
+  Json json{{"kind", eye.kind}, {"bus", eye.bus}, {"serial", eye.serial}, {"product", eye.product}};
+  if (eye.description) {
+    json["firmware"] = eye.description->firmware;
+    json["ommatidia"] = eye.description->channels;
+    json["bits"] = eye.description->bits;
+  } else {
+    json["error"] = firmware::json_of(eye.description.error());
+  }
+  return json;
+}
+
 }  // namespace
 
 hal::Result<std::vector<ListedBoard>> list_boards(const fs::path& boards) {
@@ -88,18 +100,6 @@ std::string devices_text(const AttachedEyes& attached, const fs::path& boards, c
   std::string text = table.size() > 0 ? table.text() : "no board that can be read in '" + boards.string() + "'\n";
   if (!broken.empty()) text += "\n" + broken;
   return attached_text(attached) + text;
-}
-
-Json json_of(const AttachedEye& eye) {
-  Json json{{"kind", eye.kind}, {"bus", eye.bus}, {"serial", eye.serial}, {"product", eye.product}};
-  if (eye.description) {
-    json["firmware"] = eye.description->firmware;
-    json["ommatidia"] = eye.description->channels;
-    json["bits"] = eye.description->bits;
-  } else {
-    json["error"] = json_of(eye.description.error());
-  }
-  return json;
 }
 
 Json devices_json(const AttachedEyes& attached, const std::vector<ListedBoard>& listed) {

@@ -1,0 +1,184 @@
+// `run`, `record` and `devices` in front of an emulated eye: what an operator and a test engineer do. In this process,
+// because the emulated device files read their caller's memory.
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "firmware/app/devices/attached_eyes.hpp"
+#include "firmware/app/devices/device_list.hpp"
+#include "firmware/app/run/run_options.hpp"
+#include "firmware/app/run/run_session.hpp"
+#include "tests/firmware/temporary_folder.hpp"
+#include "tests/hil/level2/benches.hpp"
+
+namespace compueye::hil {
+namespace {
+
+using Json = nlohmann::json;
+using firmware::RunOptions;
+
+constexpr int channels = 64;
+
+protocol::EmulatorSettings eye_of(const std::string& serial, protocol::EmulatedBus bus) {
+  protocol::EmulatorSettings settings = eye(serial, channels, bus);
+  settings.descriptor = protocol::tests::descriptor_of(channels, bus == protocol::EmulatedBus::usb ? 16 : 12);
+  settings.descriptor.serial = serial;
+  return settings;
+}
+
+std::string board(const std::string& name) {
+  return (std::filesystem::path(COMPUEYE_SOURCE_DIR) / "boards" / name).string();
+}
+
+/// What a run that has to succeed reports.
+Json report_of(RunOptions options, const test::TemporaryFolder& folder) {
+  options.report = folder.path() / "report.json";
+  const auto ran = firmware::run_session(options);
+  REQUIRE_MESSAGE(ran.has_value(), ran.error().text());
+  Json json = Json::parse(test::bytes_of(options.report), nullptr, false);
+  std::filesystem::remove(options.report);
+  REQUIRE_FALSE(json.is_discarded());
+  return json;
+}
+
+RunOptions options_of(const std::string& folder, std::int64_t frames) {
+  RunOptions options;
+  options.board = folder;
+  options.frames = frames;
+  options.show = false;
+  return options;
+}
+
+void check_balanced(const Json& frames) {
+  std::uint64_t dropped = 0;
+  for (const auto& [reason, count] : frames["dropped"].items()) dropped += count.get<std::uint64_t>();
+  CHECK(frames["produced"].get<std::uint64_t>() == frames["delivered"].get<std::uint64_t>() + dropped);
+}
+
+}  // namespace
+
+TEST_CASE("program: devices lists what is attached, with what the eyes say of themselves") {
+  HIL_TESTBED(testbed);
+  UsbPort usb(testbed, eye_of("CE-USB", protocol::EmulatedBus::usb));
+  HidPort hid(testbed, eye_of("CE-HID", protocol::EmulatedBus::hid));
+  usb.plug();
+  hid.plug();
+  UsbBench::wait_for_boot();
+  hal::MonotonicClock clock;
+  const firmware::AttachedEyes attached = firmware::list_attached_eyes(clock);
+  CHECK(attached.notes.empty());
+  const Json json = firmware::devices_json(attached, {});
+  REQUIRE(json["attached"].size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json& found = json["attached"][i];
+    INFO(found.dump());
+    REQUIRE_FALSE(found.contains("error"));
+    CHECK(found["serial"] == (i == 0 ? "CE-USB" : "CE-HID"));
+    CHECK(found["kind"] == (i == 0 ? "usb" : "hid"));
+    CHECK(found["firmware"] == "1.2.3");
+    CHECK(found["ommatidia"] == channels);
+    CHECK(found["bits"] == (i == 0 ? 16 : 12));
+  }
+  const std::string text = firmware::devices_text(attached, "boards", {});
+  CHECK(text.find("CE-USB") != std::string::npos);
+  CHECK(text.find("hidraw") != std::string::npos);
+}
+
+TEST_CASE("program: run streams frames from an eye on USB and on HID") {
+  HIL_TESTBED(testbed);
+  UsbPort usb(testbed, eye_of("CE-USB", protocol::EmulatedBus::usb));
+  HidPort hid(testbed, eye_of("CE-HID", protocol::EmulatedBus::hid));
+  usb.plug();
+  hid.plug();
+  UsbBench::wait_for_boot();
+  const test::TemporaryFolder folder;
+  for (const std::string name : {"generic-usb", "generic-hid"}) {
+    CAPTURE(name);
+    std::filesystem::copy(board(name), folder.path() / name);
+    const Json json = report_of(options_of((folder.path() / name).string(), 60), folder);
+    INFO(json.dump());
+    CHECK(json["frames"]["delivered"].get<int>() == 60);
+    check_balanced(json["frames"]);
+  }
+}
+
+TEST_CASE("program: what was recorded on USB replays into the same pictures every time") {
+  HIL_TESTBED(testbed);
+  UsbPort usb(testbed, eye_of("CE-USB", protocol::EmulatedBus::usb));
+  usb.plug();
+  UsbBench::wait_for_boot();
+  const test::TemporaryFolder folder;
+  const std::string copied = (folder.path() / "generic-usb").string();
+  std::filesystem::copy(board("generic-usb"), copied);
+  RunOptions options = options_of(copied, 40);
+  options.format = firmware::OutputFormat::png16;
+  options.record = folder.path() / "eye.rec";
+  options.out = folder.path() / "live";
+  report_of(options, folder);
+  usb.unplug();
+  options.replay = options.record;
+  options.record.clear();
+  options.frames = 0;  // live, the newest frames won; a replay takes all
+  for (const char* again : {"first", "second"}) {
+    options.out = folder.path() / again;
+    report_of(options, folder);
+    std::size_t compared = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "live")) {
+      CAPTURE(entry.path().filename());
+      const bool same = test::bytes_of(entry.path()) == test::bytes_of(options.out / entry.path().filename());
+      CHECK(same);
+      ++compared;
+    }
+    CHECK(compared == 40);
+  }
+}
+
+TEST_CASE("program: a run goes on when the eye is plugged in again") {
+  HIL_TESTBED(testbed);
+  UsbPort usb(testbed, eye_of("CE-USB", protocol::EmulatedBus::usb));
+  usb.plug();
+  UsbBench::wait_for_boot();
+  const test::TemporaryFolder folder;
+  const std::string copied = (folder.path() / "generic-usb").string();
+  std::filesystem::copy(board("generic-usb"), copied);
+  std::thread hand([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(900));
+    usb.unplug();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    usb.plug();
+  });
+  const Json json = report_of(options_of(copied, 1500), folder);
+  hand.join();
+  INFO(json.dump());
+  CHECK(json["frames"]["delivered"].get<int>() == 1500);
+  check_balanced(json["frames"]);
+}
+
+TEST_CASE("program: an eye that is not there, or does not fit the board, is an error that says so") {
+  HIL_TESTBED(testbed);
+  const auto absent = firmware::run_session(options_of(board("generic-usb"), 1));
+  REQUIRE_FALSE(absent);
+  CHECK(absent.error().code == hal::ErrorCode::not_found);
+  protocol::EmulatorSettings settings = eye_of("CE-SMALL", protocol::EmulatedBus::usb);
+  settings.descriptor = protocol::tests::descriptor_of(16, 16);
+  settings.descriptor.serial = "CE-SMALL";
+  UsbPort usb(testbed, settings);
+  usb.plug();
+  UsbBench::wait_for_boot();
+  const auto small = firmware::run_session(options_of(board("generic-usb"), 1));
+  REQUIRE_FALSE(small);
+  CHECK(small.error().code == hal::ErrorCode::mismatch);
+  CHECK(small.error().text().find("CE-SMALL") != std::string::npos);
+  CHECK(small.error().text().find("16 channels") != std::string::npos);
+  RunOptions lossless = options_of(board("generic-usb"), 1);
+  lossless.lossless = true;
+  CHECK(firmware::run_session(lossless).error().code == hal::ErrorCode::usage);
+}
+
+}  // namespace compueye::hil
