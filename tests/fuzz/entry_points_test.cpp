@@ -8,14 +8,15 @@
 #include <random>
 #include <vector>
 
-#include "drivers/protocol/crc32c.hpp"
 #include "tests/drivers/protocol/wire_samples.hpp"
+#include "tests/fuzz/seed_inputs.hpp"
 
 // Each entry point is compiled under its own name (tests/fuzz/CMakeLists.txt).
 extern "C" int fuzz_packet_stream(const std::uint8_t* data, std::size_t size);
 extern "C" int fuzz_descriptor(const std::uint8_t* data, std::size_t size);
 extern "C" int fuzz_hid_report(const std::uint8_t* data, std::size_t size);
 extern "C" int fuzz_cobs(const std::uint8_t* data, std::size_t size);
+extern "C" int fuzz_recording(const std::uint8_t* data, std::size_t size);
 
 using namespace compueye;
 using namespace compueye::protocol::tests;
@@ -72,63 +73,23 @@ int run(EntryPoint entry, const std::vector<Bytes>& seeds, int rounds) {
   return runs;
 }
 
-Bytes with_prefix(std::initializer_list<unsigned> prefix, const Bytes& bytes) {
-  Bytes all(prefix.size() + bytes.size());
-  const auto behind =
-      std::transform(prefix.begin(), prefix.end(), all.begin(), [](unsigned p) { return static_cast<std::byte>(p); });
-  std::copy(bytes.begin(), bytes.end(), behind);
-  return all;
-}
-
 constexpr int rounds = 4000;
 
 }  // namespace
 
-TEST_CASE("entry point of the packet stream") {
-  Random random(1);
-  std::vector<Bytes> seeds;
-  for (int k = 0; k < 12; ++k) {
-    const Bytes stream = random_stream(random, 8, 40).bytes;
-    seeds.push_back(with_prefix({0, 39, 11, 100, 0}, stream));
-    seeds.push_back(with_prefix({1, 20, 15, 7, 1}, stream));
+TEST_CASE("entry points of the decoders") {
+  struct Target {
+    const char* name;
+    EntryPoint entry;
+    std::vector<Bytes> seeds;
+  };
+  for (const Target& target :
+       {Target{"packet stream", fuzz_packet_stream, fuzz::packet_stream_seeds()},
+        Target{"descriptor", fuzz_descriptor, fuzz::descriptor_seeds()},
+        Target{"HID reports", fuzz_hid_report, fuzz::hid_report_seeds()}, Target{"COBS", fuzz_cobs, fuzz::cobs_seeds()},
+        Target{"recording", fuzz_recording, fuzz::recording_seeds()}}) {
+    CAPTURE(target.name);
+    CHECK(target.seeds.size() >= 10);
+    CHECK(run(target.entry, target.seeds, rounds) == rounds + 1 + static_cast<int>(target.seeds.size()));
   }
-  CHECK(run(fuzz_packet_stream, seeds, rounds) == rounds + 25);
-}
-
-TEST_CASE("entry point of the descriptor") {
-  std::vector<Bytes> seeds;
-  for (const int channels : {1, 5, 64}) {
-    for (const int bits : {12, 16, 24}) {
-      const auto bytes = protocol::serialise(descriptor_of(channels, bits)).value();
-      seeds.push_back(with_prefix({0, 60}, bytes));
-      seeds.push_back(with_prefix({1, 13}, bytes));
-    }
-  }
-  CHECK(run(fuzz_descriptor, seeds, rounds) == rounds + 19);
-}
-
-TEST_CASE("entry point of HID reports") {
-  Random random(3);
-  std::vector<Bytes> seeds;
-  for (unsigned k = 0; k < 16; ++k) {
-    Bytes reports = random_bytes(random, 64 * 12);
-    for (std::size_t r = 0; r < 12; ++r) {
-      reports[64 * r + 2] = static_cast<std::byte>(r / 2);  // frame numbers that follow each other
-      reports[64 * r + 3] = std::byte{0};
-      reports[64 * r + 4] = static_cast<std::byte>(r % 2);
-    }
-    seeds.push_back(with_prefix({k % 2, 63, 11, k, 0, 100, 0, 20}, reports));
-  }
-  CHECK(run(fuzz_hid_report, seeds, rounds) == rounds + 17);
-}
-
-TEST_CASE("entry point of COBS") {
-  Random random(4);
-  std::vector<Bytes> seeds;
-  for (int k = 0; k < 10; ++k) {
-    Bytes bytes = random_bytes(random, 300);
-    for (std::size_t at = 0; at < bytes.size(); at += 1 + below(random, 60)) bytes[at] = std::byte{0};
-    seeds.push_back(with_prefix({200, 50}, bytes));
-  }
-  CHECK(run(fuzz_cobs, seeds, rounds) == rounds + 11);
 }

@@ -6,7 +6,7 @@
 
 #include "drivers/protocol/crc32c.hpp"
 #include "drivers/protocol/little_endian.hpp"
-#include "tests/drivers/recording/film.hpp"
+#include "tests/drivers/recording/film_checks.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
 using namespace compueye;

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <thread>
 
-#include "tests/drivers/recording/film.hpp"
+#include "tests/drivers/recording/film_checks.hpp"
 #include "tests/drivers/recording/simulated_recording.hpp"
 #include "tests/hal/sample_source_contract.hpp"
 #include "tests/memory/allocation_counter.hpp"

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "drivers/recording/replay_source.hpp"
-#include "tests/drivers/recording/film.hpp"
+#include "tests/drivers/recording/film_checks.hpp"
 #include "tests/drivers/recording/simulated_recording.hpp"
 #include "tests/hal/sample_source_contract.hpp"
 #include "tests/memory/allocation_counter.hpp"

@@ -5,7 +5,7 @@
 #include <csignal>
 #include <filesystem>
 
-#include "tests/drivers/recording/film.hpp"
+#include "tests/drivers/recording/film_checks.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
 using namespace compueye;

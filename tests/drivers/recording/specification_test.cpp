@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/drivers/recording/film.hpp"
+#include "tests/drivers/recording/film_checks.hpp"
 #include "tests/drivers/specification_page.hpp"
 
 using namespace compueye;
