@@ -154,7 +154,7 @@ TEST_CASE("a value out of range is told with the range") {
 
 TEST_CASE("a choice that does not exist is answered with those that do") {
   check_all({
-      {"kind = \"sim\"", "kind = \"usb\"", 20, "kind = \"usb\" in [source], expected \"sim\", the only one that exists",
+      {"kind = \"sim\"", "kind = \"usc\"", 20, "kind = \"usc\" in [source], expected one of \"sim\", \"usb\", \"hid\"",
        ErrorCode::not_found},
       {"columns = 10", "columns = 10\nlattice = \"fish-eye\"", 6, "did you mean \"fisheye\"?", ErrorCode::not_found},
       {"columns = 10", "columns = 10\nlattice = \"hexagonal\"", 6,

@@ -216,12 +216,12 @@ TEST_CASE("a board that is not there is answered with those that are") {
 
   const auto far = load_board(boards / "something-else-entirely");
   REQUIRE_FALSE(far.has_value());
-  CHECK(holds(far.error().sentence, "are sim-120x120, sim-80x80, sim-8x8"));
+  CHECK(holds(far.error().sentence, "are generic-hid, generic-usb, sim-120x120, sim-80x80, sim-8x8"));
 
   const auto above = load_board(boards);
   REQUIRE_FALSE(above.has_value());
   CHECK(above.error().place == boards.string());
-  CHECK(holds(above.error().sentence, "has no board.toml; it holds the boards sim-120x120"));
+  CHECK(holds(above.error().sentence, "has no board.toml; it holds the boards generic-hid, generic-usb, sim-120x120"));
 
   const ScratchFolder scratch;
   fs::create_directories(scratch.path / "empty");

@@ -71,7 +71,7 @@ TEST_CASE("page, code and udev rules agree on how an eye names itself") {
   };
   const std::map<std::string, Case> cases{{"USB", {usb_eye_identity, "generic-usb"}},
                                           {"HID", {hid_eye_identity, "generic-hid"}}};
-  const Page page;
+  const Page page("protocol.md");
   std::size_t seen = 0;
   for (const Row& row : page.rows("USB identity")) {
     if (!cases.contains(row[0])) continue;
