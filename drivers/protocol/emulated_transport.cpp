@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "drivers/protocol/hid_control.hpp"
 
@@ -86,8 +87,7 @@ hal::Result<std::size_t> EmulatedTransport::outcome(DeviceEmulator::Transfer tra
     case DeviceEmulator::Outcome::done:
       return transfer.bytes;
     case DeviceEmulator::Outcome::nothing:
-      clock_.sleep_until_ns(deadline_ns);
-      return hal::timed_out();
+      return wait_in_vain(deadline_ns);
     case DeviceEmulator::Outcome::stalled:
       return hal::fail(hal::ErrorCode::io, description_.serial,
                        std::string("the device stalled ") + what + "; reset its pipes or open it again");
@@ -95,6 +95,16 @@ hal::Result<std::size_t> EmulatedTransport::outcome(DeviceEmulator::Transfer tra
       break;
   }
   return gone();
+}
+
+/// No answer will come; an unplugging ends the wait, as it does on a real bus.
+tl::unexpected<hal::Error> EmulatedTransport::wait_in_vain(std::int64_t deadline_ns) {
+  for (;;) {
+    if (auto there = check_there(); !there) return tl::unexpected(std::move(there.error()));
+    const std::int64_t now_ns = clock_.now_ns();
+    if (now_ns >= deadline_ns) return hal::timed_out();
+    clock_.sleep_until_ns(std::min(device_.next_change_ns(now_ns).value_or(deadline_ns), deadline_ns));
+  }
 }
 
 }  // namespace compueye::protocol

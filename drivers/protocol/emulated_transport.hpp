@@ -39,6 +39,7 @@ class EmulatedTransport final : public hal::ByteTransport {
                                                  std::int64_t deadline_ns);
   [[nodiscard]] hal::Result<std::size_t> feature_reports(std::uint8_t request, std::span<const std::byte> payload,
                                                          std::span<std::byte> reply, std::int64_t deadline_ns);
+  [[nodiscard]] tl::unexpected<hal::Error> wait_in_vain(std::int64_t deadline_ns);
   [[nodiscard]] tl::unexpected<hal::Error> gone() const;
 
   DeviceEmulator& device_;

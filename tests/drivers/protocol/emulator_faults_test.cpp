@@ -169,6 +169,16 @@ TEST_CASE("fault unplug: gone at once, back after a while as after power-on") {
   });
 }
 
+TEST_CASE("fault unplug: a request that waits for its answer ends with it") {
+  on_streaming_eyes([](EmulatedEye& eye) {
+    eye.inject({.kind = FaultKind::control_silence});
+    const std::int64_t gone_ns = eye.clock.now_ns() + 33 * ms;
+    eye.device.inject({.kind = FaultKind::unplug, .at_ns = gone_ns});
+    CHECK(eye.status().error().code == ErrorCode::disconnected);
+    CHECK(eye.clock.now_ns() == gone_ns);
+  });
+}
+
 TEST_CASE("fault replug_other: another serial is there afterwards") {
   on_streaming_eyes([](EmulatedEye& eye) {
     const std::string before = eye.transport.describe().serial;
