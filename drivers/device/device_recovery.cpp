@@ -67,7 +67,7 @@ hal::Result<void> DeviceSource::get_to(MachineState state, std::int64_t limit_ns
 }
 
 void DeviceSource::carry_out(Order order, std::int64_t until_ns) {
-  if (order == Order::pause) return clock_.sleep_until_ns(std::min(machine_.resume_ns(), until_ns));
+  if (order == Order::pause) return pause(std::min(machine_.resume_ns(), until_ns));
   blame_.reset();
   const std::int64_t began_ns = clock_.now_ns();
   auto done = attempt(order, until_ns);
@@ -79,7 +79,10 @@ void DeviceSource::carry_out(Order order, std::int64_t until_ns) {
     if (unanswered_ns_ < protocol::control_deadline_ns) return;
   }
   unanswered_ns_ = 0;
-  if (done) return machine_.done(order, clock_.now_ns());
+  if (done) {
+    if (order == Order::open || order == Order::reset_pipes) extent_.saw_stopped(clock_.now_ns());
+    return machine_.done(order, clock_.now_ns());
+  }
   const Failure why = blame_.value_or(failure_of(order, done.error().code));
   fail(why, std::move(done.error()));
 }
@@ -92,7 +95,7 @@ hal::Result<void> DeviceSource::attempt(Order order, std::int64_t until_ns) {
       pages_.reset();
       return requests_.order(protocol::Request::reset_pipes, until_ns);
     case Order::ping:
-      return requests_.ping(until_ns);
+      return ping(until_ns);
     case Order::status:
       return look_at_status(until_ns);
     case Order::descriptor:
@@ -116,12 +119,39 @@ hal::Result<void> DeviceSource::attempt(Order order, std::int64_t until_ns) {
   return {};
 }
 
-hal::Result<void> DeviceSource::open() {
+/// Waits on the old handle as long as there is one, so that an unplugging is seen when it happens.
+void DeviceSource::pause(std::int64_t until_ns) {
+  if (transport_open_ && extent_.is_open()) {
+    const auto got = transport_->read(chunk_, until_ns);
+    if (got || got.error().code == hal::ErrorCode::timeout) return;
+    if (got.error().code == hal::ErrorCode::disconnected) {
+      extent_.saw_gone(clock_.now_ns());
+      close_transport();
+    }
+  }
+  clock_.sleep_until_ns(until_ns);
+}
+
+void DeviceSource::close_transport() noexcept {
   transport_->close();
+  transport_open_ = false;
+}
+
+hal::Result<void> DeviceSource::open() {
+  close_transport();
   if (auto opened = transport_->open(); !opened) return opened;
+  transport_open_ = true;
   const std::string& found = transport_->describe().serial;
   if (serial_.empty() || found.empty() || found == serial_) return {};
   return other_eye(found);
+}
+
+hal::Result<void> DeviceSource::ping(std::int64_t until_ns) {
+  const auto pong = requests_.ping(until_ns);
+  if (!pong) return tl::unexpected(pong.error());
+  // A device that was streaming and was stopped is configured.
+  if (pong->state == protocol::DeviceState::idle) extent_.saw_idle();
+  return protocol::check_version(pong->version, serial_.empty() ? transport_->describe().bus : serial_);
 }
 
 tl::unexpected<hal::Error> DeviceSource::other_eye(const std::string& found) {
@@ -197,7 +227,7 @@ void DeviceSource::fail(Failure why, hal::Error error) {
   ++failures_[why];
   last_error_ = std::move(error);
   if (was_reading) ++failures_[Failure::restart];
-  if (why == Failure::unplugged && was_reading) extent_.saw_gone(now_ns);
+  if (why == Failure::unplugged) extent_.saw_gone(now_ns);
   if (quiet_since_ns_) extent_.saw_quiet(*quiet_since_ns_);
   pages_.reset();
   machine_.failed(why, now_ns);
@@ -206,7 +236,7 @@ void DeviceSource::fail(Failure why, hal::Error error) {
   } else if (was_open && !machine_.is_open() && !is_away(why)) {
     ++failures_[Failure::bus_reset];
   }
-  if (!machine_.is_open()) transport_->close();
+  if (!machine_.is_open() && (is_away(why) || machine_.state() == MachineState::given_up)) close_transport();
 }
 
 /// `timeout` while the device, if it is still there, has yet to tell how many frames there were.
@@ -215,7 +245,7 @@ hal::Error DeviceSource::given_up(std::int64_t deadline_ns) {
   if (!end_stream(lost_as_, deadline_ns) && ++farewells_ < most_farewells) return {hal::ErrorCode::timeout, {}, {}};
   if (extent_.is_open()) close_stream(extent_.close(clock_.now_ns()), lost_as_);
   machine_.close();
-  transport_->close();
+  close_transport();
   std::string why = last_error_.sentence.empty() ? "it does not answer" : last_error_.sentence;
   return {hal::ErrorCode::disconnected, serial_,
           "frames stopped, and recovery was given up after " + in_seconds(settings_.recovery_limit_ns) + ": " + why +

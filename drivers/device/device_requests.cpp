@@ -21,16 +21,13 @@ hal::Result<void> DeviceRequests::order(Request what, std::int64_t until_ns) {
   return request(what, {}, {}, until_ns).map([](std::size_t) {});
 }
 
-hal::Result<void> DeviceRequests::ping(std::int64_t until_ns) {
+hal::Result<protocol::PingReply> DeviceRequests::ping(std::int64_t until_ns) {
   std::array<std::byte, 4> nonce{};
   protocol::store_little(nonce.data(), ++nonce_);
   std::array<std::byte, protocol::PingReply::bytes> reply{};
   const auto got = request(Request::ping, nonce, reply, until_ns);
   if (!got) return tl::unexpected(got.error());
-  const std::string& place = transport_.describe().bus;
-  const auto pong = protocol::parse_ping(std::span(reply).first(std::min(*got, reply.size())), nonce_, place);
-  if (!pong) return tl::unexpected(pong.error());
-  return protocol::check_version(pong->version, place);
+  return protocol::parse_ping(std::span(reply).first(std::min(*got, reply.size())), nonce_, transport_.describe().bus);
 }
 
 hal::Result<protocol::Status> DeviceRequests::status(std::int64_t until_ns) {

@@ -25,10 +25,10 @@ class DeviceRequests {
 
   /// One without payload and reply: START, STOP, RESET_PIPES.
   [[nodiscard]] hal::Result<void> order(protocol::Request request, std::int64_t until_ns);
-  /// Errors besides: unsupported (another protocol version).
-  [[nodiscard]] hal::Result<void> ping(std::int64_t until_ns);
+  /// The same in every version of the protocol, which is not judged.
+  [[nodiscard]] hal::Result<protocol::PingReply> ping(std::int64_t until_ns);
   [[nodiscard]] hal::Result<protocol::Status> status(std::int64_t until_ns);
-  /// Fetches the next page. Errors besides: unsupported.
+  /// Fetches the next page. Errors besides: unsupported (another protocol version).
   [[nodiscard]] hal::Result<void> page(protocol::DescriptorPages& pages, std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> set_configuration(const protocol::Configuration& wanted, std::int64_t until_ns);
   /// Errors besides: mismatch (another configuration came back). `serial`: for errors.

@@ -122,9 +122,11 @@ std::optional<hal::SampleBlock> DeviceSource::read_stream(std::int64_t deadline_
     fail_quiet();
     return std::nullopt;
   }
-  if (!quiet_since_ns_) quiet_since_ns_ = clock_.now_ns();
+  const std::int64_t now_ns = clock_.now_ns();
+  if (!quiet_since_ns_) quiet_since_ns_ = now_ns;
   const std::int64_t silent_ns = *quiet_since_ns_ + silence_ns_;
   const auto got = transport_->read(chunk_, std::min(deadline_ns, silent_ns));
+  waited_ = clock_.now_ns() - now_ns > configuration_.period_ns() / 16;
   if (got) {
     held_bytes_ = std::min(*got, chunk_.size());
     bytes_since_frame_ += held_bytes_;
@@ -154,7 +156,7 @@ void DeviceSource::saw_frame(hal::SampleBlock& block) noexcept {
   block.config_id = run_config_id_;
   if (std::exchange(clock_anew_, false)) block.flags.time_ok = false;
   machine_.saw_frame();
-  extent_.saw_frame(block.frame - stream_base_, clock_.now_ns());
+  extent_.saw_frame(block.frame - stream_base_, clock_.now_ns(), waited_);
   quiet_since_ns_.reset();
   bytes_since_frame_ = 0;
   if (!block.flags.time_ok) ++failures_[Failure::doubtful_time];
@@ -180,6 +182,10 @@ bool DeviceSource::ask_time(std::int64_t deadline_ns) {
     return true;
   }
   if (requests_.cut_short()) return false;
+  if (status.error().code == hal::ErrorCode::disconnected) {
+    extent_.saw_gone(clock_.now_ns());
+    return true;  // read() will see it, too
+  }
   ++failures_[status.error().code == hal::ErrorCode::timeout ? Failure::request_timeout : Failure::request_refused];
   ask_time_ns_ = clock_.now_ns() + ask_time_pause_.next_ns();
   return true;

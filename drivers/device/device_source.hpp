@@ -84,7 +84,10 @@ class DeviceSource final : public hal::SampleSource {
   hal::Result<void> get_to(MachineState state, std::int64_t limit_ns);
   void carry_out(Order order, std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> attempt(Order order, std::int64_t until_ns);
+  void pause(std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> open();
+  void close_transport() noexcept;
+  [[nodiscard]] hal::Result<void> ping(std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> look_at_status(std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> fetch_descriptor(std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> judge(protocol::DeviceDescriptor found);
@@ -97,6 +100,7 @@ class DeviceSource final : public hal::SampleSource {
   DeviceSettings settings_;
   std::unique_ptr<hal::ByteTransport> transport_;
   hal::Clock& clock_;
+  bool transport_open_ = false;
   DeviceRequests requests_;
   DeviceMachine machine_;
   FailureCounters failures_;
@@ -125,6 +129,7 @@ class DeviceSource final : public hal::SampleSource {
   int late_reads_ = 1;                          // after the deadline, to put one frame together
   std::optional<std::int64_t> quiet_since_ns_;  // since when frames are waited for
   std::size_t bytes_since_frame_ = 0;
+  bool waited_ = false;         // for the last chunk
   std::size_t held_bytes_ = 0;  // of the chunk, that the reader has yet to get
   int times_held_ = 0;
   int farewells_ = 0;             // tries to ask a device that was given up

@@ -10,7 +10,7 @@ void ExposureClock::begin(std::int64_t start_ns, std::int64_t period_ns) noexcep
   period_ns_ = std::max<std::int64_t>(period_ns, 1);
 }
 
-void ExposureClock::saw_frame(std::uint64_t device_frame, std::int64_t now_ns) noexcept {
+void ExposureClock::saw_frame(std::uint64_t device_frame, std::int64_t now_ns, bool waited_for) noexcept {
   std::int64_t ready_ns = 0;
   if (device_frame >= static_cast<std::uint64_t>(none) ||
       __builtin_mul_overflow(static_cast<std::int64_t>(device_frame) + 1, period_ns_, &ready_ns) ||
@@ -22,6 +22,7 @@ void ExposureClock::saw_frame(std::uint64_t device_frame, std::int64_t now_ns) n
     origin_ns_ += late_ns;
     late_ns = 0;
   }
+  if (!waited_for) return;
   least_in_window_ns_ = std::min(least_in_window_ns_, late_ns);
   if (++in_window_ < window) return;
   if (least_late_ns_ != none && least_in_window_ns_ > least_late_ns_) {

@@ -8,13 +8,15 @@ namespace compueye::device {
 /// How many frames of a stream a device has exposed by a time of the host: for the time when it can no longer be asked.
 ///
 /// Frames are complete one period after the other from START on. The two clocks drift apart, so the estimate follows
-/// the arrivals: a frame that comes before its time moves it back, and when the least late of `window` frames is later
-/// than the least late before, the device is slow and it moves on. It is right to the latency of the transport, so to
-/// one frame where that is less than a period; before the first frames, to the delay of START (10 ms at most).
+/// the arrivals: a frame that comes before its time moves it back, and when the least late of `window` frames that were
+/// waited for is later than the least late before, the device is slow and it moves on. It is right to the latency of
+/// the transport, so to one frame where that is less than a period; before the first frames, to the delay of START (10
+/// ms at most).
 class ExposureClock {
  public:
   void begin(std::int64_t start_ns, std::int64_t period_ns) noexcept;
-  void saw_frame(std::uint64_t device_frame, std::int64_t now_ns) noexcept;
+  /// `waited_for`: it came while the host waited; otherwise the host was late and may have found it at any time after.
+  void saw_frame(std::uint64_t device_frame, std::int64_t now_ns, bool waited_for) noexcept;
   /// Frames that were complete before `t_ns`.
   [[nodiscard]] std::uint64_t exposed_before(std::int64_t t_ns) const noexcept;
 

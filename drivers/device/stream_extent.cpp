@@ -21,9 +21,10 @@ std::uint64_t near_estimate(std::uint32_t counted, std::uint64_t estimate) noexc
 void StreamExtent::begin(std::uint32_t config_id, const protocol::Status& before, std::int64_t start_ns,
                          std::int64_t period_ns) noexcept {
   open_ = true;
+  idle_ = false;
   config_id_ = config_id;
   before_ = before;
-  gone_ns_ = quiet_ns_ = never;
+  gone_ns_ = stopped_ns_ = quiet_ns_ = never;
   clock_.begin(start_ns, period_ns);
 }
 
@@ -31,7 +32,7 @@ StreamExtent::Frames StreamExtent::close(const protocol::Status& status, std::in
   open_ = false;
   if (status.boot_count != before_.boot_count) {
     const auto up_ns = static_cast<std::int64_t>(std::min(status.now_ns, static_cast<std::uint64_t>(never)));
-    return {clock_.exposed_before(std::min(gone_ns_, now_ns - up_ns)), 0};
+    return {clock_.exposed_before(std::min({gone_ns_, stopped_ns_, now_ns - up_ns})), 0};
   }
   // The counters of the stream before: START did not arrive.
   const bool untouched = status.frames == before_.frames && status.last_t_ns == before_.last_t_ns;
@@ -41,7 +42,10 @@ StreamExtent::Frames StreamExtent::close(const protocol::Status& status, std::in
 
 StreamExtent::Frames StreamExtent::close(std::int64_t now_ns) noexcept {
   open_ = false;
-  return {clock_.exposed_before(gone_ns_ != never ? gone_ns_ : std::min(quiet_ns_, now_ns)), 0};
+  for (const std::int64_t end_ns : {std::min(gone_ns_, stopped_ns_), quiet_ns_}) {
+    if (end_ns != never) return {clock_.exposed_before(end_ns), 0};
+  }
+  return {clock_.exposed_before(now_ns), 0};
 }
 
 }  // namespace compueye::device

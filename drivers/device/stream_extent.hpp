@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include "drivers/device/exposure_clock.hpp"
 #include "drivers/protocol/status.hpp"
@@ -12,8 +13,8 @@ namespace compueye::device {
 ///
 /// Asked after the stream has ended, a device that has not started anew knows (STATUS: `frames`, `overruns`). One that
 /// has, or that was plugged in again, has forgotten: the frames are then those that ExposureClock gives until it
-/// started anew (its clock is 0 there) or was seen to be gone, whichever was earlier. One that can no longer be asked
-/// is taken to have stopped when its stream did.
+/// started anew (its clock is 0 there), was stopped or was seen to be gone, whichever was earliest. One that can no
+/// longer be asked is taken to have stopped when its stream did.
 class StreamExtent {
  public:
   struct Frames {
@@ -24,23 +25,36 @@ class StreamExtent {
   /// START was sent; `before` is the last STATUS before it.
   void begin(std::uint32_t config_id, const protocol::Status& before, std::int64_t start_ns,
              std::int64_t period_ns) noexcept;
-  void saw_frame(std::uint64_t device_frame, std::int64_t now_ns) noexcept { clock_.saw_frame(device_frame, now_ns); }
-  /// The device was seen to be gone while it streamed.
-  void saw_gone(std::int64_t t_ns) noexcept { gone_ns_ = std::min(gone_ns_, t_ns); }
+  /// As ExposureClock::saw_frame().
+  void saw_frame(std::uint64_t device_frame, std::int64_t now_ns, bool waited_for) noexcept {
+    clock_.saw_frame(device_frame, now_ns, waited_for);
+  }
+  /// The device was seen to be gone.
+  void saw_gone(std::int64_t t_ns) noexcept {
+    if (!idle_) gone_ns_ = std::min(gone_ns_, t_ns);
+  }
+  /// It was stopped: RESET_PIPES was answered, or the bus was reset.
+  void saw_stopped(std::int64_t t_ns) noexcept { stopped_ns_ = std::min(stopped_ns_, t_ns); }
+  /// It is not configured any more, so it had started anew before it was stopped.
+  void saw_idle() noexcept {
+    idle_ = true;
+    stopped_ns_ = std::numeric_limits<std::int64_t>::max();
+  }
   /// No frame has come since `t_ns`, for whatever reason.
   void saw_quiet(std::int64_t t_ns) noexcept { quiet_ns_ = std::min(quiet_ns_, t_ns); }
   [[nodiscard]] bool is_open() const noexcept { return open_; }
 
   /// Closes it with what the device says, asked at `now_ns`.
   [[nodiscard]] Frames close(const protocol::Status& status, std::int64_t now_ns) noexcept;
-  /// Closes it without asking: with the time at which it was gone, else quiet, else `now_ns`.
+  /// Closes it without asking: with the time at which it was gone or stopped, else quiet, else `now_ns`.
   [[nodiscard]] Frames close(std::int64_t now_ns) noexcept;
 
  private:
   bool open_ = false;
+  bool idle_ = false;
   std::uint32_t config_id_ = 0;
   protocol::Status before_;
-  std::int64_t gone_ns_ = 0, quiet_ns_ = 0;
+  std::int64_t gone_ns_ = 0, stopped_ns_ = 0, quiet_ns_ = 0;
   ExposureClock clock_;
 };
 

@@ -45,9 +45,10 @@ TEST_CASE("the estimate stays within a frame of the truth while the clocks drift
       std::uint64_t worst = 0;
       for (std::uint64_t frame = 0; ready_ns(frame) < hour; ++frame) {
         const auto jitter_ns = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(2 * ms));
-        reader_ns = std::max(reader_ns, ready_ns(frame) + latency_ns + jitter_ns);
-        clock.saw_frame(frame, reader_ns);
-        if (random() % 1000 == 0) reader_ns += 200 * ms;
+        const std::int64_t there_ns = ready_ns(frame) + latency_ns + jitter_ns;
+        clock.saw_frame(frame, std::max(reader_ns, there_ns), there_ns > reader_ns);
+        reader_ns = std::max(reader_ns, there_ns);
+        if (random() % 1000 == 0) reader_ns += 2000 * ms;
         const std::uint64_t estimate = clock.exposed_before(ready_ns(frame) + 1);
         if (frame > 500) worst = std::max(worst, std::max(estimate, frame + 1) - std::min(estimate, frame + 1));
       }
@@ -59,8 +60,8 @@ TEST_CASE("the estimate stays within a frame of the truth while the clocks drift
 TEST_CASE("a frame number beyond all time does no harm") {
   ExposureClock clock;
   clock.begin(0, ms);
-  clock.saw_frame(~std::uint64_t{0}, 5 * ms);
-  clock.saw_frame(~std::uint64_t{0} / 4, 5 * ms);
+  clock.saw_frame(~std::uint64_t{0}, 5 * ms, true);
+  clock.saw_frame(~std::uint64_t{0} / 4, 5 * ms, true);
   CHECK(clock.exposed_before(10 * ms + 1) == 10);
 }
 
@@ -104,6 +105,20 @@ TEST_CASE("the extent of a stream: asked, forgotten, unreachable, never begun") 
   gone.saw_gone(1101 * ms);
   gone.saw_gone(1201 * ms);
   CHECK(gone.close(anew, 1255 * ms).made == 10);
+
+  StreamExtent stopped = begun();
+  stopped.saw_stopped(1081 * ms);
+  CHECK(stopped.close(anew, 1255 * ms).made == 8);
+  StreamExtent stopped_later = begun();
+  stopped_later.saw_quiet(1051 * ms);
+  stopped_later.saw_stopped(1091 * ms);
+  CHECK(stopped_later.close(2000 * ms).made == 9);
+  StreamExtent idle = begun();
+  idle.saw_quiet(1051 * ms);
+  idle.saw_stopped(1091 * ms);
+  idle.saw_idle();
+  idle.saw_gone(1500 * ms);  // long over
+  CHECK(idle.close(2000 * ms).made == 5);
 
   StreamExtent quiet = begun();
   quiet.saw_quiet(1051 * ms);

@@ -1,0 +1,119 @@
+// Random faults on an eye that streams: nothing may go unaccounted. A short run here; tools/soak runs a million blocks.
+
+#include <chrono>
+#include <cstdlib>
+
+#include "tests/drivers/device/eye_rig.hpp"
+#include "tests/hil/soak/random_faults.hpp"
+
+using namespace compueye;
+using namespace compueye::device;
+using namespace compueye::device::tests;
+using namespace compueye::hil;
+
+namespace {
+
+struct SoakResult {
+  hal::FrameAccount account;
+  FailureCounters failures;
+  std::uint64_t made = 0;  // by the device
+  std::uint64_t incidents = 0;
+  std::int64_t worst_outage_ns = 0;  // from one frame to the next
+};
+
+/// For whoever has to find out what went wrong.
+std::string describe(const Incident& incident, std::int64_t now_ns) {
+  std::string text = "reader sleeps " + std::to_string(incident.reader_sleeps_ns / ms) + " ms";
+  for (const EmulatorFault& fault : incident.faults) {
+    text += "; " + std::string(protocol::name(fault.kind)) + " after " + std::to_string((fault.at_ns - now_ns) / ms) +
+            " ms for " + std::to_string(fault.duration_ns / ms) + " ms, count " + std::to_string(fault.count) +
+            ", value " + std::to_string(fault.value);
+  }
+  return text;
+}
+
+/// Until the device has made `blocks` frames, or as many as were wanted last.
+SoakResult soak(EmulatedBus bus, std::uint64_t blocks, std::uint64_t seed) {
+  auto emulator = protocol::tests::eye_settings(bus, 16, seed);
+  emulator.fifo_bytes = 8192;
+  emulator.descriptor.most_payload = 15;  // two packets a frame
+  if (bus == EmulatedBus::hid) emulator.descriptor.most_payload = 65535;
+  EyeRig rig(emulator);
+  RandomFaults faults(seed, emulator.descriptor.serial);
+  SoakResult result;
+  REQUIRE(rig.start());
+  std::uint64_t next_incident = faults.calm_frames();
+  std::int64_t last_frame_ns = rig.clock.now_ns(), over_ns = 0;
+  std::string last_incident;
+  while (rig.shown.made() < blocks) {
+    CAPTURE(seed);
+    CAPTURE(last_incident);
+    const auto block = rig.next_frame();
+    CAPTURE((block ? std::string() : block.error().text()));
+    REQUIRE(block);
+    result.worst_outage_ns = std::max(result.worst_outage_ns, rig.clock.now_ns() - last_frame_ns);
+    last_frame_ns = rig.clock.now_ns();
+    if (rig.delivered() < next_incident || rig.clock.now_ns() < over_ns) continue;
+    Incident incident = faults.next(rig.clock.now_ns());
+    last_incident = describe(incident, rig.clock.now_ns());
+    for (EmulatorFault& fault : incident.faults) rig.device.inject(std::move(fault));
+    if (incident.reader_sleeps_ns > 0) {
+      rig.clock.advance(incident.reader_sleeps_ns);
+      last_frame_ns += incident.reader_sleeps_ns;
+    }
+    over_ns = incident.over_ns;
+    ++result.incidents;
+    next_incident = rig.delivered() + faults.calm_frames();
+  }
+  rig.source().stop();
+  result.account = rig.source().account();
+  result.failures = rig.source().failures();
+  result.made = rig.shown.made();
+  return result;
+}
+
+std::uint64_t unaccounted(const SoakResult& result) {
+  const hal::FrameAccount& account = result.account;
+  const std::uint64_t known = account.delivered + account.total_dropped();
+  return std::max(known, result.made) - std::min(known, result.made);
+}
+
+void soak_both(std::uint64_t blocks, std::uint64_t seed) {
+  for (const EmulatedBus bus : protocol::tests::both_buses) {
+    const auto began = std::chrono::steady_clock::now();
+    const SoakResult result = soak(bus, blocks, seed);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
+    CHECK(unaccounted(result) == 0);
+    CHECK(result.account.balanced());
+    CHECK(result.made >= blocks);
+    CHECK(result.incidents > blocks / 500);
+    CHECK(result.account.delivered > blocks / 2);
+    CHECK(result.worst_outage_ns <= 6 * second);
+    std::string drops;
+    for (std::size_t k = 0; k < hal::drop_reason_count; ++k) {
+      if (result.account.dropped[k] == 0) continue;
+      drops += ", " + std::string(hal::name(static_cast<hal::DropReason>(k))) + " " +
+               std::to_string(result.account.dropped[k]);
+    }
+    MESSAGE((bus == EmulatedBus::hid ? "hid: " : "usb: ")
+            << result.made << " blocks of 16 samples made in " << result.incidents << " incidents, "
+            << result.account.delivered << " delivered" << drops << "; unaccounted " << unaccounted(result)
+            << "; longest outage " << result.worst_outage_ns / ms << " ms; " << result.failures.text() << "; "
+            << seconds.count() << " s");
+  }
+}
+
+std::uint64_t number_in(const char* variable, std::uint64_t otherwise) {
+  const char* const text = std::getenv(variable);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+}  // namespace
+
+TEST_CASE("random faults leave nothing unaccounted: 20,000 blocks a bus") {
+  soak_both(20'000, 1);
+}
+
+TEST_CASE("soak: random faults, as many blocks a bus as tools/soak says" * doctest::skip()) {
+  soak_both(number_in("COMPUEYE_SOAK_BLOCKS", 1'000'000), number_in("COMPUEYE_SOAK_SEED", 1));
+}
