@@ -106,7 +106,10 @@ class DeviceEmulator {
   [[nodiscard]] const EmulatorTruth& truth() const noexcept { return truth_; }
 
   /// Adds a line to the script; one whose time has passed happens at the next call.
-  void inject(EmulatorFault fault) { faults_.push_back({std::move(fault), false}); }
+  void inject(EmulatorFault fault) {
+    std::erase_if(faults_, [](const Scripted& each) { return each.begun; });
+    faults_.push_back({std::move(fault), false});
+  }
 
  private:
   DeviceEmulator(EmulatorSettings settings, SampleGenerator generator, std::vector<std::byte> descriptor_bytes,
