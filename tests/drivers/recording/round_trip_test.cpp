@@ -20,7 +20,9 @@ TEST_CASE("what is recorded is read back bit for bit, with its books") {
     CAPTURE(seed);
     const int bits = 1 + static_cast<int>(below(random, 24)), channels = 1 + static_cast<int>(below(random, 70));
     const Film film = random_film(seed, channels, bits, below(random, 12));
-    auto reader = reader_of(recorded(film));
+    const Bytes bytes = recorded(film);
+    CHECK(bytes == encoded(film));
+    auto reader = reader_of(bytes);
     REQUIRE_MESSAGE(reader.has_value(), reader.error().text());
     for (int again = 0; again < 2; ++again) {
       REQUIRE(reads_back(*reader, film, std::vector<bool>(film.frames.size(), false)));
