@@ -42,7 +42,7 @@ StreamExtent::Frames StreamExtent::close(const protocol::Status& status, std::in
 
 StreamExtent::Frames StreamExtent::close(std::int64_t now_ns) noexcept {
   open_ = false;
-  for (const std::int64_t end_ns : {std::min(gone_ns_, stopped_ns_), quiet_ns_}) {
+  for (const std::int64_t end_ns : {std::min(gone_ns_, idle_ ? never : stopped_ns_), quiet_ns_}) {
     if (end_ns != never) return {clock_.exposed_before(end_ns), 0};
   }
   return {clock_.exposed_before(now_ns), 0};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "drivers/device/exposure_clock.hpp"
 #include "drivers/protocol/status.hpp"
@@ -35,11 +34,8 @@ class StreamExtent {
   }
   /// It was stopped: RESET_PIPES was answered, or the bus was reset.
   void saw_stopped(std::int64_t t_ns) noexcept { stopped_ns_ = std::min(stopped_ns_, t_ns); }
-  /// It is not configured any more, so it had started anew before it was stopped.
-  void saw_idle() noexcept {
-    idle_ = true;
-    stopped_ns_ = std::numeric_limits<std::int64_t>::max();
-  }
+  /// It is not configured any more, so it has started anew, maybe before it was stopped.
+  void saw_idle() noexcept { idle_ = true; }
   /// No frame has come since `t_ns`, for whatever reason.
   void saw_quiet(std::int64_t t_ns) noexcept { quiet_ns_ = std::min(quiet_ns_, t_ns); }
   [[nodiscard]] bool is_open() const noexcept { return open_; }

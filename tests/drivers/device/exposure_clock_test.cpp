@@ -120,6 +120,11 @@ TEST_CASE("the extent of a stream: asked, forgotten, unreachable, never begun") 
   idle.saw_gone(1500 * ms);  // long over
   CHECK(idle.close(2000 * ms).made == 5);
 
+  StreamExtent stopped_then_anew = begun();
+  stopped_then_anew.saw_stopped(1061 * ms);
+  stopped_then_anew.saw_idle();
+  CHECK(stopped_then_anew.close(anew, 1255 * ms).made == 6);
+
   StreamExtent quiet = begun();
   quiet.saw_quiet(1051 * ms);
   CHECK(quiet.close(2000 * ms).made == 5);
