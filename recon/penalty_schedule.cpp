@@ -62,16 +62,15 @@ PenaltyLevels fall(double rho, double lambda) {
 
 }  // namespace
 
-PenaltyLevels penalty_levels(const Objective& objective, const Plan& plan, double rho, int order,
+PenaltyLevels penalty_levels(const Objective& objective, const Plan& plan, bool rho_by_rule, int order,
                              bool mirror_symmetric) {
-  if (plan.rho > 0.0) return {{rho}, 1};
   const bool in_pixels = objective.basis == BasisKind::identity;
-  if (plan.solver == SolverKind::admm && in_pixels && plan.l1_reweighting == 0.0) return dip(rho);
-  if (plan.solver == SolverKind::pdhg && !in_pixels && objective.basis != BasisKind::tv &&
+  if (rho_by_rule && plan.solver == SolverKind::admm && in_pixels && plan.l1_reweighting == 0.0) return dip(plan.rho);
+  if (rho_by_rule && plan.solver == SolverKind::pdhg && !in_pixels && objective.basis != BasisKind::tv &&
       resolve_rank(plan, order) < order) {
-    return mirror_symmetric ? rise(rho, objective.lambda) : fall(rho, objective.lambda);
+    return mirror_symmetric ? rise(plan.rho, objective.lambda) : fall(plan.rho, objective.lambda);
   }
-  return {{rho}, 1};
+  return {{plan.rho}, 1};
 }
 
 }  // namespace compueye::recon

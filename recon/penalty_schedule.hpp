@@ -26,8 +26,8 @@ struct PenaltyLevels {
 /// The same on an eye without mirror symmetry, whose rows were measured: down from 5/2 rho to 10/7 of it within 12
 /// iterations, 20 iterations for 34 at 80x80.
 ///
-/// `order` is the number of seeing rows; plan.rho is the one asked for, 0 for none.
-[[nodiscard]] PenaltyLevels penalty_levels(const Objective& objective, const Plan& plan, double rho, int order,
+/// `plan` has its rho, asked for or by rule, and its rank, if it has one; `order` is the number of seeing rows.
+[[nodiscard]] PenaltyLevels penalty_levels(const Objective& objective, const Plan& plan, bool rho_by_rule, int order,
                                            bool mirror_symmetric);
 
 }  // namespace compueye::recon

@@ -38,7 +38,7 @@ struct Reconstructor::Tables {
   int image_cols = 0;
   Objective objective;
   Plan plan;
-  double rho_asked = 0.0;  // 0: by the rule, in plan.rho
+  bool rho_by_rule = false;
   std::vector<std::int32_t> seeing;
   Factor factor;  // of f32 the inverse in use; modes are only kept to be stored
   std::variant<OwnedTables<float>, OwnedTables<double>> by_precision;
@@ -118,9 +118,7 @@ struct Reconstructor::Tables {
 
   template <class T>
   PenaltyLevels fill_schedule(const ParityClasses& classes, OwnedTables<T>& tables) const {
-    Plan asked = plan;
-    asked.rho = rho_asked;
-    PenaltyLevels levels = penalty_levels(objective, asked, plan.rho, classes.rows(), classes.count() > 1);
+    PenaltyLevels levels = penalty_levels(objective, plan, rho_by_rule, classes.rows(), classes.count() > 1);
     recon::fill_schedule(levels, tables);
     return levels;
   }
@@ -183,7 +181,7 @@ hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& resp
   const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
   if (auto ok = check_scale(squares, response.cols()); !ok) return tl::unexpected(ok.error());
   tables->plan.rho = resolve_rho(response, image_rows, image_cols, objective, plan);
-  tables->rho_asked = plan.rho;
+  tables->rho_by_rule = plan.rho == 0.0;
   tables->factor = wanted_factor(response, image_rows, image_cols, objective, tables->plan);
   if (plan.solver == SolverKind::pdhg) tables->plan.rank = tables->factor.rank;
   if (auto ok = check_in_precision(squares, objective, tables->plan); !ok) return tl::unexpected(ok.error());

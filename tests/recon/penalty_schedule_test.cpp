@@ -18,9 +18,10 @@ using namespace compueye::tests;
 
 namespace {
 
-Plan plan_of(SolverKind solver) {
+Plan plan_of(SolverKind solver, double rho = 0.0) {
   Plan plan;
   plan.solver = solver;
+  plan.rho = rho;
   return plan;
 }
 
@@ -47,9 +48,8 @@ double mean_error(const Response& a, double rho) {
     for (const double v : y) power += v * v;
     const double sigma = std::sqrt(power / a.rows() / 1000.0);
     for (double& v : y) v += sigma * random.normal();
-    Plan plan = plan_of(SolverKind::admm);
+    Plan plan = plan_of(SolverKind::admm, rho);
     plan.iterations = 22;
-    plan.rho = rho;
     const auto solver = Reconstructor::create(a, 16, 16, objective_of(BasisKind::identity, 4.0 * sigma), plan);
     REQUIRE(solver.has_value());
     const SolvedFrame frame = solve_frame(*solver, to_float(y));
@@ -67,7 +67,7 @@ double mean_error(const Response& a, double rho) {
 
 TEST_CASE("admm in pixels goes down from rho, back to it, and ends there") {
   const PenaltyLevels dip =
-      penalty_levels(objective_of(BasisKind::identity, 0.1), plan_of(SolverKind::admm), 3.0, 64, true);
+      penalty_levels(objective_of(BasisKind::identity, 0.1), plan_of(SolverKind::admm, 3.0), true, 64, true);
   const auto least = std::min_element(dip.penalties.begin(), dip.penalties.end());
   CHECK(*least == doctest::Approx(1.0));
   CHECK(dip.penalties.front() == doctest::Approx(4.0));
@@ -78,7 +78,7 @@ TEST_CASE("admm in pixels goes down from rho, back to it, and ends there") {
 
 TEST_CASE("pdhg rises from rho to twice rho where lambda leaves it time") {
   const auto levels = [](double lambda, BasisKind basis = BasisKind::dct, int order = many_rows) {
-    return penalty_levels(objective_of(basis, lambda), plan_of(SolverKind::pdhg), 7.0, order, true).penalties;
+    return penalty_levels(objective_of(basis, lambda), plan_of(SolverKind::pdhg, 7.0), true, order, true).penalties;
   };
   for (const double lambda : {0.0, 0.2, 2.0}) {
     const auto rise = levels(lambda);
@@ -95,7 +95,7 @@ TEST_CASE("pdhg rises from rho to twice rho where lambda leaves it time") {
 
 TEST_CASE("pdhg comes down from above rho where no symmetry is left") {
   const auto levels = [](double lambda) {
-    return penalty_levels(objective_of(BasisKind::dct, lambda), plan_of(SolverKind::pdhg), 7.0, many_rows, false)
+    return penalty_levels(objective_of(BasisKind::dct, lambda), plan_of(SolverKind::pdhg, 7.0), true, many_rows, false)
         .penalties;
   };
   const auto fall = levels(0.2);
@@ -110,9 +110,8 @@ TEST_CASE("pdhg comes down from above rho where no symmetry is left") {
 TEST_CASE("a rho that was asked for stays") {
   for (const SolverKind solver : {SolverKind::admm, SolverKind::pdhg}) {
     for (const BasisKind basis : {BasisKind::identity, BasisKind::dct}) {
-      Plan plan = plan_of(solver);
-      plan.rho = 5.0;
-      const PenaltyLevels levels = penalty_levels(objective_of(basis, 0.1), plan, 5.0, many_rows, true);
+      const PenaltyLevels levels =
+          penalty_levels(objective_of(basis, 0.1), plan_of(solver, 5.0), false, many_rows, true);
       CHECK(levels.penalties == std::vector<double>{5.0});
     }
   }
@@ -120,8 +119,8 @@ TEST_CASE("a rho that was asked for stays") {
 
 TEST_CASE("the schedule follows the unit of the samples") {
   const auto rise = [](double unit) {
-    return penalty_levels(objective_of(BasisKind::dct, 3.0 * unit), plan_of(SolverKind::pdhg), 7.0 * unit, many_rows,
-                          true)
+    return penalty_levels(objective_of(BasisKind::dct, 3.0 * unit), plan_of(SolverKind::pdhg, 7.0 * unit), true,
+                          many_rows, true)
         .penalties;
   };
   const auto one = rise(1.0), hundred = rise(100.0);

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstddef>
 #include <new>
-#include <numbers>
 #include <vector>
 
+#include "bench/eyes.hpp"
 #include "calib/nominal.hpp"
 #include "recon/mirror_symmetry.hpp"
 #include "recon/thin_step_tables.hpp"
@@ -23,12 +23,8 @@ using namespace compueye::tests;
 namespace {
 
 recon::Response small_eye() {
-  constexpr double deg = std::numbers::pi / 180.0;
-  hal::EyeGeometry eye;
-  eye.rows = eye.columns = 8;
-  eye.interommatidial_rad = 1.5 * deg;
-  eye.acceptance_rad = 8.0 * deg;
-  return calib::nominal_response(eye, {16, 16, 8.0, 8.0, 30.0}).value();
+  const bench::Eye eye = bench::eye_8x8();
+  return calib::nominal_response(eye.geometry, eye.plane).value();
 }
 
 template <class T>

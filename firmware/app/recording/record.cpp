@@ -10,14 +10,12 @@
 #include "firmware/app/board/board.hpp"
 #include "firmware/app/eye/board_source.hpp"
 #include "firmware/app/eye/scene_choice.hpp"
-#include "firmware/app/eye/simulated_board.hpp"
 #include "firmware/app/recording/recorded_with.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/app/report/number_text.hpp"
 #include "firmware/app/report/progress_reporter.hpp"
 #include "firmware/app/report/visible_text.hpp"
 #include "firmware/app/run/stop_signals.hpp"
-#include "sim/simulated_eye.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -119,22 +117,6 @@ Result<void> report(const RecordOptions& options, const Board& board, const std:
   return print_text(text);
 }
 
-Result<std::unique_ptr<hal::SampleSource>> eye_to_record(const RecordOptions& options, const Board& board,
-                                                         sim::Scene scene, hal::Clock& clock) {
-  if (!board.source.simulated()) {
-    if (auto ok = need(!options.lossless, "--lossless", "cannot be asked of an eye on a cable, which waits for nobody");
-        !ok) {
-      return tl::unexpected(std::move(ok.error()));
-    }
-    return attached_eye(board, clock);
-  }
-  auto settings = simulated_eye_settings(board, std::move(scene), static_cast<std::uint64_t>(options.seed));
-  if (!options.lossless) settings.frame_rate_hz = board.source.frame_rate_hz;
-  auto eye = sim::SimulatedEye::create(std::move(settings), clock);
-  if (!eye) return tl::unexpected(std::move(eye.error()));
-  return std::unique_ptr<hal::SampleSource>(std::move(*eye));
-}
-
 }  // namespace
 
 Result<void> RecordOptions::check() const {
@@ -170,7 +152,8 @@ Result<void> record(const RecordOptions& options) {
   const StopSignals signals;
   hal::MonotonicClock clock;
 
-  auto eye = eye_to_record(options, *board, std::move(*scene), clock);
+  auto eye = board_source(
+      *board, {std::move(*scene), static_cast<std::uint64_t>(options.seed), options.lossless, std::nullopt}, clock);
   if (!eye) return tl::unexpected(std::move(eye.error()));
   recording::RecordingSettings settings;
   settings.path = options.out;

@@ -5,36 +5,10 @@
 #include <utility>
 
 #include "firmware/app/eye/board_source.hpp"
-#include "firmware/app/eye/simulated_board.hpp"
 #include "firmware/app/recording/recorded_with.hpp"
-#include "sim/simulated_eye.hpp"
 
 namespace compueye::firmware {
-namespace {
-
 using hal::Result;
-
-Result<std::unique_ptr<hal::SampleSource>> board_eye(const RunOptions& options, const Board& board,
-                                                     const sim::Scene& scene, std::uint64_t frames, hal::Clock& clock) {
-  if (!board.source.simulated()) {
-    if (options.lossless) {
-      return hal::fail(hal::ErrorCode::usage, "--lossless",
-                       fmt::format("cannot be asked of the eye of board {}, which waits for nobody; record it and "
-                                   "replay the recording",
-                                   board.name));
-    }
-    return attached_eye(board, clock);
-  }
-  auto settings = simulated_eye_settings(board, scene, static_cast<std::uint64_t>(options.seed));
-  if (!options.lossless) settings.frame_rate_hz = board.source.frame_rate_hz;
-  // Without a limit the frames read ahead of the last one would be made only to be thrown away.
-  if (options.lossless && frames > 0) settings.frame_limit = frames;
-  auto eye = sim::SimulatedEye::create(std::move(settings), clock);
-  if (!eye) return tl::unexpected(std::move(eye.error()));
-  return std::unique_ptr<hal::SampleSource>(std::move(*eye));
-}
-
-}  // namespace
 
 Result<RunSource> RunSource::make(const RunOptions& options, const Board& board, const sim::Scene& scene,
                                   std::uint64_t frames, hal::Clock& clock) {
@@ -50,7 +24,10 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
     made.source_ = std::move(*replay);
     return made;
   }
-  auto eye = board_eye(options, board, scene, frames, clock);
+  EyeWanted wanted{scene, static_cast<std::uint64_t>(options.seed), options.lossless, std::nullopt};
+  // Without a limit the frames read ahead of the last one would be made only to be thrown away.
+  if (options.lossless && frames > 0) wanted.frame_limit = frames;
+  auto eye = board_source(board, std::move(wanted), clock);
   if (!eye) return tl::unexpected(std::move(eye.error()));
   made.source_ = std::move(*eye);
   if (options.record.empty()) return made;

@@ -19,9 +19,8 @@ namespace compueye::firmware {
 /// they go to besides.
 class RunSource {
  public:
-  /// `frames`: how many are wanted, 0 = all. `clock` must outlive it. Errors: those of SimulatedEye::create(),
-  /// attached_eye() and ReplaySource::open(); mismatch (a recording of another number of channels or depth than the
-  /// board's); usage (--lossless with an eye on a cable).
+  /// `frames`: how many are wanted, 0 = all. `clock` must outlive it. Errors: those of board_source() and
+  /// ReplaySource::open(); mismatch (a recording of another number of channels or depth than the board's).
   [[nodiscard]] static hal::Result<RunSource> make(const RunOptions& options, const Board& board,
                                                    const sim::Scene& scene, std::uint64_t frames, hal::Clock& clock);
 
