@@ -231,8 +231,9 @@ COMPUEYE_MULTIVERSION void do_pass(Pass pass, const Dct2d<float>& psi, const flo
                                    std::size_t begin, std::size_t end) noexcept {
   transform_strips(pass, psi, in, out, scratch, begin, end);
 }
-COMPUEYE_MULTIVERSION void do_pass(Pass pass, const Dct2d<double>& psi, const double* in, double* out, double* scratch,
-                                   std::size_t begin, std::size_t end) noexcept {
+// Double is for set-up and checks: clones of it would take the compiler longer than the rest of recon/core.
+void do_pass(Pass pass, const Dct2d<double>& psi, const double* in, double* out, double* scratch, std::size_t begin,
+             std::size_t end) noexcept {
   transform_strips(pass, psi, in, out, scratch, begin, end);
 }
 

@@ -8,19 +8,13 @@
 #include <numeric>
 #include <vector>
 
-#include "recon/lambda_by_risk.hpp"
 #include "tests/recon/random_problem.hpp"
-#include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;
 using namespace compueye::recon;
 using namespace compueye::tests;
 
 namespace {
-
-constexpr int side = 16;
-constexpr int pixels = side * side;
-constexpr std::size_t pixel_count = pixels;
 
 Response scaled(const Response& a, double factor) {
   std::vector<std::int32_t> rows(static_cast<std::size_t>(a.rows()));
@@ -30,37 +24,6 @@ Response scaled(const Response& a, double factor) {
 
 double rule(const Response& a, BasisKind basis, double sigma, SolverKind solver = SolverKind::admm) {
   return lambda_by_rule(a, 1, a.cols(), solver, basis, sigma).value();
-}
-
-/// Samples of one bright block on black, which is sparse in differences.
-struct Scene {
-  std::vector<double> truth = std::vector<double>(pixel_count, 0.0);
-  std::vector<float> y;
-};
-
-Scene noisy_block(const Response& a, double sigma, std::uint64_t seed) {
-  Scene scene;
-  for (int r = 4; r < 12; ++r) {
-    for (int c = 3; c < 9; ++c) scene.truth[static_cast<std::size_t>(r * side + c)] = 0.6;
-  }
-  std::vector<double> samples(static_cast<std::size_t>(a.rows()));
-  a.forward(scene.truth, samples);
-  Random random(seed);
-  for (const double s : samples) scene.y.push_back(static_cast<float>(s + sigma * random.normal()));
-  return scene;
-}
-
-double error_at(const Response& a, const Scene& scene, Objective objective, const Plan& plan, double lambda) {
-  objective.lambda = lambda;
-  const auto solver = Reconstructor::create(a, side, side, objective, plan);
-  REQUIRE(solver.has_value());
-  const SolvedFrame frame = solve_frame(*solver, scene.y);
-  double apart = 0.0, size = 0.0;
-  for (std::size_t n = 0; n < pixel_count; ++n) {
-    apart += (frame.x[n] - scene.truth[n]) * (frame.x[n] - scene.truth[n]);
-    size += scene.truth[n] * scene.truth[n];
-  }
-  return apart / size;
 }
 
 }  // namespace
@@ -99,104 +62,4 @@ TEST_CASE("the rule refuses a sigma that is none, and survives an eye that sees 
     REQUIRE_FALSE(lambda.has_value());
     CHECK(lambda.error().code == hal::ErrorCode::out_of_range);
   }
-}
-
-TEST_CASE("lambda by risk finds a better lambda than a start that is too small, whatever the draw") {
-  Random random(2);
-  const Response a = random_response(random, 400, pixels, 0.3);
-  Objective objective;
-  objective.basis = BasisKind::tv;
-  objective.constraint = ConstraintKind::box;
-  objective.lambda = 0.1;
-  Plan plan;
-  plan.iterations = 200;
-  for (const std::uint64_t seed : {3U, 4U, 5U}) {
-    const Scene scene = noisy_block(a, 1.0, seed);
-    const auto found = lambda_by_risk(a, side, side, objective, plan, scene.y, 1.0);
-    REQUIRE(found.has_value());
-    CHECK(found->trials.size() == 6);
-    CHECK(found->trials.front().lambda == 0.1);
-    CHECK(found->lambda > 0.5);
-    const double start = error_at(a, scene, objective, plan, 0.1);
-    CHECK(error_at(a, scene, objective, plan, found->lambda) < 0.5 * start);
-  }
-}
-
-TEST_CASE("the risk is estimated without bias") {
-  // Tikhonov is linear: its risk is known exactly, and the estimates scatter about it.
-  Random random(6);
-  const Response a = random_response(random, 200, pixels, 0.3);
-  Objective objective;
-  objective.lambda = 20.0;
-  Plan plan;
-  plan.solver = SolverKind::tikhonov;
-  plan.precision = Precision::f64;
-  constexpr double sigma = 0.5;
-  double estimated = 0.0, actual = 0.0;
-  for (std::uint64_t seed = 10; seed < 30; ++seed) {
-    const Scene scene = noisy_block(a, sigma, seed);
-    const auto found = lambda_by_risk(a, side, side, objective, plan, scene.y, sigma);
-    REQUIRE(found.has_value());
-    estimated += found->trials.front().risk;
-    const auto solver = Reconstructor::create(a, side, side, objective, plan);
-    const SolvedFrame frame = solve_frame(*solver, scene.y);
-    std::vector<double> apart(pixel_count), samples(200);
-    for (std::size_t n = 0; n < pixel_count; ++n) apart[n] = frame.x[n] - scene.truth[n];
-    a.forward(apart, samples);
-    actual += std::inner_product(samples.begin(), samples.end(), samples.begin(), 0.0);
-  }
-  CHECK(estimated == doctest::Approx(actual).epsilon(0.1));
-}
-
-TEST_CASE("lambda by risk keeps the start where the samples cannot tell") {
-  Random random(7);
-  const Response a = random_response(random, 12, pixels, 0.3);
-  Objective objective;
-  objective.basis = BasisKind::dct;
-  objective.constraint = ConstraintKind::box;
-  objective.lambda = 0.05;
-  const Scene scene = noisy_block(a, 0.5, 8);
-  const auto found = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.5);
-  REQUIRE(found.has_value());
-  CHECK(found->lambda == 0.05);
-  CHECK(found->trials.size() == 6);
-  const auto noise_free = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.0);
-  REQUIRE(noise_free.has_value());
-  CHECK(noise_free->lambda == 0.05);
-  CHECK(noise_free->trials.empty());
-}
-
-TEST_CASE("lambda by risk takes a stored factor and gives the same lambda with it") {
-  Random random(9);
-  const Response a = random_response(random, 60, pixels, 0.3);
-  Objective objective;
-  objective.basis = BasisKind::haar;
-  objective.lambda = 0.01;
-  const Scene scene = noisy_block(a, 0.3, 10);
-  const auto solver = Reconstructor::create(a, side, side, objective, {});
-  REQUIRE(solver.has_value());
-  const auto with = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.3, solver->factor());
-  const auto without = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.3);
-  REQUIRE(with.has_value());
-  REQUIRE(without.has_value());
-  CHECK(with->lambda == without->lambda);
-  REQUIRE(with->trials.size() == without->trials.size());
-  for (std::size_t k = 0; k < with->trials.size(); ++k) CHECK(with->trials[k].risk == without->trials[k].risk);
-}
-
-TEST_CASE("lambda by risk says what is wrong with its input") {
-  Random random(11);
-  const Response a = random_response(random, 20, pixels, 0.3);
-  Objective objective;
-  objective.lambda = 0.1;
-  const std::vector<float> y(20, 1.0F);
-  const auto code = [&](std::span<const float> samples, double sigma, const Progress& progress = {}) {
-    const auto found = lambda_by_risk(a, side, side, objective, {}, samples, sigma, std::nullopt, progress);
-    REQUIRE_FALSE(found.has_value());
-    return found.error().code;
-  };
-  CHECK(code(std::span(y).first(19), 0.1) == hal::ErrorCode::mismatch);
-  CHECK(code(y, -0.1) == hal::ErrorCode::out_of_range);
-  CHECK(code(std::vector<float>(20, std::nanf("")), 0.1) == hal::ErrorCode::out_of_range);
-  CHECK(code(y, 0.1, [](auto, double, double) { return false; }) == hal::ErrorCode::interrupted);
 }
