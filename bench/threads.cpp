@@ -1,5 +1,5 @@
 // What a second thread is worth on the 80x80 eye: the operators, the DCT and whole iterations, by one thread and by
-// two.
+// two. How far apart the two cores are is measured before and after: it decides.
 
 #include <fmt/format.h>
 
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/bandwidth.hpp"
+#include "bench/core_distance.hpp"
 #include "bench/eyes.hpp"
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
@@ -40,6 +41,8 @@ struct Shared {
 
 struct Measured {
   double bandwidth = 0.0;
+  double round_trip_before_ns = 0.0;
+  double round_trip_after_ns = 0.0;
   std::vector<Shared> work;
 };
 
@@ -66,6 +69,7 @@ hal::Result<void> time_operator(const std::string& name, const recon::Response& 
   auto filled = recon::fill_operator(recon::quantised(a, kind), eye.plane.rows, eye.plane.cols, kind, tables);
   if (!filled) return filled;
   const core::LinearOperator<float>& op = tables.problem.a;
+  tables.problem.employ(two.crew());  // more scratch than one
   const bench::Workspace memory(op.scratch_size() * sizeof(float) + 64);
   auto* scratch = reinterpret_cast<float*>(memory.span().data());
   std::vector<float> x = some_numbers(op.cols), y = some_numbers(op.rows), x_out(op.cols), y_out(op.rows);
@@ -136,7 +140,7 @@ hal::Result<Measured> measure() {
   if (!measured) return tl::unexpected(measured.error());
   const recon::Response a = nominal->select_rows(nominal->seeing_rows());
   const recon::Response m = measured->select_rows(measured->seeing_rows());
-  Measured all{bench::read_bandwidth(), {}};
+  Measured all{bench::read_bandwidth(), bench::core_round_trip_ns(), 0.0, {}};
   const auto timed =
       time_operator("running sums", a, recon::OperatorKind::running_sums, eye, **two, all.work).and_then([&] {
         return time_operator("int8 runs, measured rows", m, recon::OperatorKind::dense_runs_int8, eye, **two, all.work);
@@ -150,6 +154,7 @@ hal::Result<Measured> measure() {
     if (!shared) return tl::unexpected(std::move(shared.error()));
     all.work.push_back(std::move(*shared));
   }
+  all.round_trip_after_ns = bench::core_round_trip_ns();
   return all;
 }
 
@@ -159,12 +164,18 @@ std::string text_of(const Measured& measured) {
     table.add({s.name, fmt::format("{:.1f}", s.alone_us), fmt::format("{:.1f}", s.by_two_us),
                fmt::format("{:.2f}", s.alone_us / s.by_two_us)});
   }
-  return fmt::format("one core reads memory at {:.2f} GB/s\n\n{}", measured.bandwidth, table.text());
+  return fmt::format(
+      "one core reads memory at {:.2f} GB/s; a cache line goes to the other core and back in {:.0f} ns, at the end "
+      "{:.0f} "
+      "ns\n\n{}",
+      measured.bandwidth, measured.round_trip_before_ns, measured.round_trip_after_ns, table.text());
 }
 
 std::string json_of(const Measured& measured) {
   firmware::Json json;
   json["read_bandwidth_gigabytes_per_second"] = measured.bandwidth;
+  json["core_round_trip_before_ns"] = measured.round_trip_before_ns;
+  json["core_round_trip_after_ns"] = measured.round_trip_after_ns;
   for (const Shared& s : measured.work) {
     json["work"].push_back({{"name", s.name}, {"one_thread_us", s.alone_us}, {"two_threads_us", s.by_two_us}});
   }

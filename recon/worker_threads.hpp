@@ -36,11 +36,12 @@ class WorkerThreads {
   void work(std::size_t worker) noexcept;
 
   std::vector<std::thread> threads_;
+  std::atomic<bool> busy_{false};
+  // One cache line, since a core that finds a new turn there wants all of it.
+  alignas(64) std::atomic<std::uint32_t> turn_{0};  // counted up when there is work
+  bool stopping_ = false;
   core::Crew::Task task_ = nullptr;
   void* data_ = nullptr;
-  bool stopping_ = false;
-  std::atomic<bool> busy_{false};
-  alignas(64) std::atomic<std::uint32_t> turn_{0};     // counted up when there is work
   alignas(64) std::atomic<std::uint32_t> working_{0};  // threads that have not finished this turn
 };
 

@@ -8,8 +8,8 @@
 namespace compueye::recon::core {
 
 /// Who does the frame path's work: by default whoever calls, or several workers that somebody else keeps (recon's
-/// WorkerThreads). Work is cut into parts, and worker w of n always does parts count*w/n .. count*(w+1)/n - 1. Parts
-/// write to places of their own, in the order of one worker alone: the bits are the same for any number of workers.
+/// WorkerThreads). Work is cut into parts, each of which always is the same worker's. Parts write to places of their
+/// own, in the order of one worker alone: the bits are the same for any number of workers.
 struct Crew {
   using Task = void (*)(void* data, std::size_t worker) noexcept;
 
@@ -21,31 +21,47 @@ struct Crew {
   /// Pictures of fewer pixels are done before the workers have met.
   static constexpr std::size_t least_worth = std::size_t{96} * 96;
 
+  [[nodiscard]] bool shares(std::size_t size) const noexcept { return workers > 1 && size >= least_worth; }
+
   /// Calls work(worker, begin, end) so that every part of 0 .. parts-1 is in one range; in this thread alone where
   /// `size` elements are too few to be worth it. What a worker does must not depend on what another does in the same
-  /// call.
+  /// call. Worker w of n has parts*w/n .. parts*(w+1)/n - 1.
   template <class Work>
   void share(std::size_t parts, std::size_t size, const Work& work) const noexcept {
 #if defined(COMPUEYE_CORTEX_M)
     static_cast<void>(size);
     return work(std::size_t{0}, std::size_t{0}, parts);  // nobody else is there, and no call goes through a pointer
 #else
-    if (workers < 2 || size < least_worth) return work(std::size_t{0}, std::size_t{0}, parts);
-    Shared<Work> shared{&work, parts, workers};
+    if (!shares(size)) return work(std::size_t{0}, std::size_t{0}, parts);
+    Shared<Work> shared{work, parts, workers};
     run(context, &Shared<Work>::part, &shared);
 #endif
   }
 
+  /// The same for rows or columns of a picture: the first worker has those around the middle, the next ones those
+  /// around it, in two ranges. Folded pictures (core/folded_picture.hpp) go from the middle outward by nature, and what
+  /// one step leaves in a core's cache the next one finds there.
+  template <class Work>
+  void share_from_middle(std::size_t parts, std::size_t size, const Work& work) const noexcept {
+    share(parts, size, [&](std::size_t worker, std::size_t begin, std::size_t end) {
+      // begin parts are within, end - begin around them
+      const std::size_t first = (parts - end) / 2, inner_first = (parts - begin) / 2;
+      if (begin == 0) return work(worker, first, first + end);
+      if (first < inner_first) work(worker, first, inner_first);
+      if (inner_first + begin < first + end) work(worker, inner_first + begin, first + end);
+    });
+  }
+
  private:
   template <class Work>
-  struct Shared {
-    const Work* work;
+  struct alignas(64) Shared {  // with what the work refers to, in as few cache lines as can be
+    Work work;
     std::size_t parts, workers;
     static void part(void* data, std::size_t worker) noexcept {
       const auto& shared = *static_cast<const Shared*>(data);
       const std::size_t begin = shared.parts * worker / shared.workers;
       const std::size_t end = shared.parts * (worker + 1) / shared.workers;
-      if (begin < end) (*shared.work)(worker, begin, end);
+      if (begin < end) shared.work(worker, begin, end);
     }
   };
 };

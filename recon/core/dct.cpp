@@ -195,74 +195,117 @@ COMPUEYE_INLINE void strip_inverse(const DctTable<T>& table, const T* __restrict
   }
 }
 
+/// One pass over strips of columns or of rows, in either direction or there and back.
 template <class T>
-COMPUEYE_INLINE void strip_transform(bool inverse, const DctTable<T>& table, T* strip, T* out, T* work) {
-  if (inverse) {
-    strip_inverse(table, strip, out, work);
-  } else {
-    strip_forward(table, strip, out, work);
+struct Pass {
+  bool columns = false;
+  bool forward = false;
+  bool inverse = false;
+  const Ascent<T>* ascent = nullptr;  ///< between there and back
+  T* dual = nullptr;                  ///< in strips; what goes back, if there is one
+};
+
+/// `strip` -> `result`, by way of the strip of the dual at `dual`.
+template <class T>
+COMPUEYE_INLINE void transform_strip(const Pass<T>& pass, const DctTable<T>& table, T* strip, T* result, T* work,
+                                     T* dual) {
+  if (pass.forward) strip_forward(table, strip, result, work);
+  if (pass.ascent != nullptr) {
+    const Ascent<T> ascent = *pass.ascent;
+    for (std::size_t k = 0; k < table.length * lanes; ++k) dual[k] = ascent.moved(dual[k], result[k]);
   }
+  if (pass.inverse) strip_inverse(table, dual != nullptr ? dual : strip, result, work);
 }
 
-/// Which way, and along what.
-enum class Pass { forward_columns, forward_rows, inverse_columns, inverse_rows };
-
 template <class T>
-COMPUEYE_INLINE void transform_strips(Pass pass, const Dct2d<T>& psi, const T* in, T* out, T* scratch,
+COMPUEYE_INLINE void transform_strips(const Pass<T>& pass, const Dct2d<T>& psi, const T* in, T* out, T* scratch,
                                       std::size_t begin, std::size_t end) {
   const std::size_t rows = psi.rows.length, cols = psi.cols.length;
-  const bool inverse = pass == Pass::inverse_columns || pass == Pass::inverse_rows;
-  if (pass == Pass::forward_columns || pass == Pass::inverse_columns) {
-    along_columns(
-        rows, cols, cols, in, out, scratch, begin,
-        end, [&](T * strip, T * result, T * work) __attribute__((always_inline)) {
-          strip_transform(inverse, psi.rows, strip, result, work);
-        });
-  } else {
-    along_rows(
-        rows, cols, cols, in, out, scratch, begin,
-        end, [&](T * strip, T * result, T * work) __attribute__((always_inline)) {
-          strip_transform(inverse, psi.cols, strip, result, work);
-        });
+  const DctTable<T>& table = pass.columns ? psi.rows : psi.cols;
+  const std::size_t size = table.length * lanes;
+  T *strip = scratch, *result = scratch + size, *work = scratch + 2 * size;
+  for (std::size_t s = begin; s < end; ++s) {
+    const std::size_t width = strip_width(s, pass.columns ? cols : rows), at = s * lanes * (pass.columns ? 1 : cols);
+    if (pass.columns) {
+      columns_to_strip(in + at, rows, cols, width, strip);
+    } else if (pass.forward || pass.dual == nullptr) {
+      some_rows_to_strip(in + at, width, cols, cols, strip);
+    }
+    transform_strip(pass, table, strip, result, work, pass.dual == nullptr ? nullptr : pass.dual + s * size);
+    if (pass.columns) {
+      strip_to_columns(result, rows, cols, width, out + at);
+    } else {
+      strip_to_some_rows(result, width, cols, cols, out + at);
+    }
   }
 }
 
-COMPUEYE_MULTIVERSION void do_pass(Pass pass, const Dct2d<float>& psi, const float* in, float* out, float* scratch,
-                                   std::size_t begin, std::size_t end) noexcept {
+COMPUEYE_MULTIVERSION void do_strips(const Pass<float>& pass, const Dct2d<float>& psi, const float* in, float* out,
+                                     float* scratch, std::size_t begin, std::size_t end) noexcept {
   transform_strips(pass, psi, in, out, scratch, begin, end);
 }
 // Double is for set-up and checks: clones of it would take the compiler longer than the rest of recon/core.
-void do_pass(Pass pass, const Dct2d<double>& psi, const double* in, double* out, double* scratch, std::size_t begin,
-             std::size_t end) noexcept {
+void do_strips(const Pass<double>& pass, const Dct2d<double>& psi, const double* in, double* out, double* scratch,
+               std::size_t begin, std::size_t end) noexcept {
   transform_strips(pass, psi, in, out, scratch, begin, end);
 }
 
 template <class T>
-void transform_2d(bool inverse, const Dct2d<T>& psi, const T* in, T* out, T* scratch) noexcept {
+void share_pass(const Pass<T>& pass, const Dct2d<T>& psi, const T* in, T* out, T* scratch) noexcept {
   const std::size_t rows = psi.rows.length, cols = psi.cols.length;
   const std::size_t apart = dct_scratch_size(rows, cols);
-  psi.crew.share(strips_of(cols), rows * cols, [&](std::size_t worker, std::size_t begin, std::size_t end) {
-    do_pass(inverse ? Pass::inverse_columns : Pass::forward_columns, psi, in, out, scratch + worker * apart, begin,
-            end);
-  });
-  psi.crew.share(strips_of(rows), rows * cols, [&](std::size_t worker, std::size_t begin, std::size_t end) {
-    do_pass(inverse ? Pass::inverse_rows : Pass::forward_rows, psi, out, out, scratch + worker * apart, begin, end);
-  });
+  psi.crew.share_from_middle(strips_of(pass.columns ? cols : rows), rows * cols,
+                             [&](std::size_t worker, std::size_t begin, std::size_t end) {
+                               do_strips(pass, psi, in, out, scratch + worker * apart, begin, end);
+                             });
+}
+
+template <class T>
+void forward_of(const Dct2d<T>& psi, const T* in, T* out, T* scratch) noexcept {
+  share_pass<T>({.columns = true, .forward = true}, psi, in, out, scratch);
+  share_pass<T>({.forward = true}, psi, out, out, scratch);
+}
+
+template <class T>
+void inverse_of(const Dct2d<T>& psi, const T* in, T* dual, T* out, T* scratch) noexcept {
+  share_pass<T>({.inverse = true, .dual = dual}, psi, in, out, scratch);
+  share_pass<T>({.columns = true, .inverse = true}, psi, out, out, scratch);
+}
+
+template <class T>
+void ascend_of(const Dct2d<T>& psi, const Ascent<T>& ascent, const T* in, T* dual, T* out, T* scratch) noexcept {
+  share_pass<T>({.columns = true, .forward = true}, psi, in, out, scratch);
+  share_pass<T>({.forward = true, .inverse = true, .ascent = &ascent, .dual = dual}, psi, out, out, scratch);
+  share_pass<T>({.columns = true, .inverse = true}, psi, out, out, scratch);
 }
 
 }  // namespace
 
 void dct_forward(const Dct2d<float>& psi, const float* in, float* out, float* scratch) noexcept {
-  transform_2d(false, psi, in, out, scratch);
+  forward_of(psi, in, out, scratch);
 }
 void dct_forward(const Dct2d<double>& psi, const double* in, double* out, double* scratch) noexcept {
-  transform_2d(false, psi, in, out, scratch);
+  forward_of(psi, in, out, scratch);
 }
 void dct_inverse(const Dct2d<float>& psi, const float* in, float* out, float* scratch) noexcept {
-  transform_2d(true, psi, in, out, scratch);
+  inverse_of<float>(psi, in, nullptr, out, scratch);
 }
 void dct_inverse(const Dct2d<double>& psi, const double* in, double* out, double* scratch) noexcept {
-  transform_2d(true, psi, in, out, scratch);
+  inverse_of<double>(psi, in, nullptr, out, scratch);
+}
+void dct_inverse_of_strips(const Dct2d<float>& psi, float* dual, float* out, float* scratch) noexcept {
+  inverse_of<float>(psi, out, dual, out, scratch);
+}
+void dct_inverse_of_strips(const Dct2d<double>& psi, double* dual, double* out, double* scratch) noexcept {
+  inverse_of<double>(psi, out, dual, out, scratch);
+}
+void dct_ascend(const Dct2d<float>& psi, const Ascent<float>& ascent, const float* in, float* dual, float* out,
+                float* scratch) noexcept {
+  ascend_of(psi, ascent, in, dual, out, scratch);
+}
+void dct_ascend(const Dct2d<double>& psi, const Ascent<double>& ascent, const double* in, double* dual, double* out,
+                double* scratch) noexcept {
+  ascend_of(psi, ascent, in, dual, out, scratch);
 }
 
 }  // namespace compueye::recon::core

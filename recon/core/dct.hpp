@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "recon/core/crew.hpp"
+#include "recon/core/relaxed_steps.hpp"
 
 namespace compueye::recon::core {
 
@@ -74,5 +75,25 @@ void dct_forward(const Dct2d<double>& psi, const double* in, double* out, double
 /// out = Psi' in, the inverse.
 void dct_inverse(const Dct2d<float>& psi, const float* in, float* out, float* scratch) noexcept;
 void dct_inverse(const Dct2d<double>& psi, const double* in, double* out, double* scratch) noexcept;
+
+/// A picture of coefficients as the transform along rows leaves it: strips of 16 rows, each column by column, lanes
+/// beyond the picture zero. Elements of T that it takes, and where the coefficient of row r and column c is.
+[[nodiscard]] constexpr std::size_t dct_strips_size(std::size_t rows, std::size_t cols) noexcept {
+  return (rows + 15) / 16 * 16 * cols;
+}
+[[nodiscard]] constexpr std::size_t dct_strip_element(std::size_t r, std::size_t c, std::size_t cols) noexcept {
+  return (r / 16 * cols + c) * 16 + r % 16;
+}
+
+/// Moves a dual of ||Psi x||_1 that is kept in strips by Psi in, and out = Psi' dual: what dct_forward(), ascend() and
+/// dct_inverse() do, with one pass over the rows instead of three. in and out may be the same picture.
+void dct_ascend(const Dct2d<float>& psi, const Ascent<float>& ascent, const float* in, float* dual, float* out,
+                float* scratch) noexcept;
+void dct_ascend(const Dct2d<double>& psi, const Ascent<double>& ascent, const double* in, double* dual, double* out,
+                double* scratch) noexcept;
+
+/// out = Psi' dual of one in strips, which stays as it is.
+void dct_inverse_of_strips(const Dct2d<float>& psi, float* dual, float* out, float* scratch) noexcept;
+void dct_inverse_of_strips(const Dct2d<double>& psi, double* dual, double* out, double* scratch) noexcept;
 
 }  // namespace compueye::recon::core

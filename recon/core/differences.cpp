@@ -59,14 +59,16 @@ COMPUEYE_MULTIVERSION void adjoint_rows(const double* d, std::size_t rows, std::
 
 template <class T>
 void share_differences(const T* x, std::size_t rows, std::size_t cols, T* d, const Crew& crew) noexcept {
-  crew.share(rows, rows * cols,
-             [&](std::size_t, std::size_t begin, std::size_t end) { difference_rows(x, rows, cols, d, begin, end); });
+  crew.share_from_middle(rows, rows * cols, [&](std::size_t, std::size_t begin, std::size_t end) {
+    difference_rows(x, rows, cols, d, begin, end);
+  });
 }
 
 template <class T>
 void share_adjoint(const T* d, std::size_t rows, std::size_t cols, T* x, const Crew& crew) noexcept {
-  crew.share(rows, rows * cols,
-             [&](std::size_t, std::size_t begin, std::size_t end) { adjoint_rows(d, rows, cols, x, begin, end); });
+  crew.share_from_middle(rows, rows * cols, [&](std::size_t, std::size_t begin, std::size_t end) {
+    adjoint_rows(d, rows, cols, x, begin, end);
+  });
 }
 
 }  // namespace

@@ -26,7 +26,10 @@ struct LinearOperator {
   Crew crew = {};  ///< that shares the work, but for the adjoint of csr
 
   /// Elements of T that forward() and adjoint_accumulate() want as scratch; none but for running sums.
-  [[nodiscard]] std::size_t scratch_size() const noexcept { return sums.tables == 0 ? 0 : sums.scratch_size(); }
+  [[nodiscard]] std::size_t scratch_size() const noexcept {
+    if (sums.tables == 0) return 0;
+    return crew.workers > 1 ? sums.shared_scratch_size() : sums.scratch_size();
+  }
 };
 
 /// Bytes of tables that one application reads; the same for A and A'.

@@ -19,11 +19,13 @@ class Pdhg {
       : problem_(problem),
         n_(problem.pixels()),
         sparse_basis_(problem.point.basis != BasisKind::identity),
+        in_strips_(problem.point.basis == BasisKind::dct),
         coefficient_count_(sparse_basis_ ? problem.psi.coefficients() : 0),
+        dual_count_(in_strips_ ? dct_strips_size(problem.psi.rows, problem.psi.cols) : coefficient_count_),
         warm_start_(problem, memory),
         row_dual_(memory.take<T>(problem.a.rows)),
         x_(memory.take<T>(n_)),
-        basis_dual_(memory.take<T>(coefficient_count_)),
+        basis_dual_(memory.take<T>(dual_count_)),
         gradient_(memory.take<T>(n_)),
         ahead_(memory.take<T>(n_)),
         coefficients_(memory.take<T>(coefficient_count_)),
@@ -42,7 +44,11 @@ class Pdhg {
       return info;
     }
     info.warm = warm_start_.allowed(dual_step_);
-    if (!info.warm) start_cold();
+    if (info.warm) {
+      synthesise_dual();
+    } else {
+      start_cold();
+    }
     for (int k = 1; k < problem_.point.iterations; ++k) {
       set_penalty(k - 1);
       fall();
@@ -56,9 +62,16 @@ class Pdhg {
 
  private:
   void start_cold() noexcept {
-    for (std::size_t k = 0; k < n_; ++k) x_[k] = T(0);
+    for (std::size_t k = 0; k < n_; ++k) x_[k] = gradient_[k] = T(0);
     for (std::size_t i = 0; i < problem_.a.rows; ++i) row_dual_[i] = T(0);
-    for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = T(0);
+    for (std::size_t k = 0; k < dual_count_; ++k) basis_dual_[k] = T(0);
+  }
+
+  /// gradient = Psi'q
+  void synthesise_dual() noexcept {
+    if (in_strips_) return dct_inverse_of_strips(problem_.psi.dct, basis_dual_, gradient_, scratch_);
+    if (sparse_basis_) return synthesise(problem_.psi, basis_dual_, gradient_, scratch_);
+    for (std::size_t k = 0; k < n_; ++k) gradient_[k] = T(0);
   }
 
   void set_penalty(int done) noexcept {
@@ -66,30 +79,37 @@ class Pdhg {
     const T rho = problem_.schedule.penalty[dual_step_.level()];
     descent_ = T(1) / rho;
     threshold_ = sparse_basis_ ? T(0) : problem_.lambda / rho;
-    basis_step_ = problem_.basis_step * (rho / problem_.rho);
+    ascent_ = {problem_.basis_step * (rho / problem_.rho), problem_.lambda, problem_.relaxation};
   }
 
-  /// gradient = A'u + Psi'q, then p in its place
+  /// gradient += A'u, then p in its place
   void fall() noexcept {
-    if (sparse_basis_) {
-      synthesise(problem_.psi, basis_dual_, gradient_, scratch_);
-    } else {
-      for (std::size_t k = 0; k < n_; ++k) gradient_[k] = T(0);
-    }
     dual_step_.samples().adjoint_accumulate(row_dual_, gradient_);
-    problem_.crew.share(n_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
-      descend(gradient_ + begin, descent_, threshold_, lo_, hi_, problem_.relaxation, x_ + begin, ahead_ + begin,
-              end - begin);
+    const std::size_t cols = problem_.image_cols;
+    problem_.crew.share_from_middle(problem_.image_rows, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
+      const std::size_t at = begin * cols;
+      descend(gradient_ + at, descent_, threshold_, lo_, hi_, problem_.relaxation, x_ + at, ahead_ + at,
+              (end - begin) * cols);
     });
   }
 
+  /// Both duals, then gradient = Psi'q
   void rise() noexcept {
     dual_step_.apply(ahead_, row_dual_);
+    if (in_strips_) return dct_ascend(problem_.psi.dct, ascent_, ahead_, basis_dual_, gradient_, scratch_);
+    raise_basis_dual();
+    synthesise_dual();
+  }
+
+  void raise_basis_dual() noexcept {
+    if (in_strips_) return dct_ascend(problem_.psi.dct, ascent_, ahead_, basis_dual_, coefficients_, scratch_);
     if (!sparse_basis_) return;
     analyse(problem_.psi, ahead_, coefficients_, scratch_);
-    problem_.crew.share(coefficient_count_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
-      ascend(coefficients_ + begin, basis_step_, problem_.lambda, problem_.relaxation, basis_dual_ + begin,
-             end - begin);
+    const std::size_t cols = problem_.image_cols;
+    problem_.crew.share_from_middle(problem_.image_rows, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t at = begin * cols; at < coefficient_count_; at += n_) {
+        ascend(coefficients_ + at, ascent_, basis_dual_ + at, (end - begin) * cols);
+      }
     });
   }
 
@@ -102,7 +122,10 @@ class Pdhg {
     const double moved = static_cast<double>(squared_distance(ahead_, gradient_, n_));  // 2 p - x from p
     info.primal_residual = size > 0.0 ? square_root(moved / size) : 0.0;
     // The picture is found; the duals are moved for those who ask for them.
-    if (problem_.warm_start || problem_.measure_gap || problem_.point.iterations == 1) rise();
+    if (problem_.warm_start || problem_.measure_gap || problem_.point.iterations == 1) {
+      dual_step_.apply(ahead_, row_dual_);
+      raise_basis_dual();
+    }
     judge(info);
   }
 
@@ -126,17 +149,23 @@ class Pdhg {
     info.health = health_by_gap(info.duality_gap, info.objective, step);
   }
 
-  /// Relaxation may have carried it beyond its bounds.
+  /// In its picture's order. Relaxation may have carried it beyond its bounds.
   const T* bounded_dual() noexcept {
     if (!sparse_basis_ || !problem_.measure_gap) return nullptr;
-    for (std::size_t k = 0; k < coefficient_count_; ++k) coefficients_[k] = within(basis_dual_[k], problem_.lambda);
+    const std::size_t cols = problem_.image_cols;
+    for (std::size_t k = 0; k < coefficient_count_; ++k) {
+      const std::size_t at = in_strips_ ? dct_strip_element(k / cols, k % cols, cols) : k;
+      coefficients_[k] = within(basis_dual_[at], problem_.lambda);
+    }
     return coefficients_;
   }
 
   const FrameProblem<T>& problem_;
   std::size_t n_;
   bool sparse_basis_;
+  bool in_strips_;  // the basis dual
   std::size_t coefficient_count_;
+  std::size_t dual_count_;
   WarmStart<T> warm_start_;
   T* row_dual_;
   T* x_;
@@ -151,7 +180,7 @@ class Pdhg {
   T hi_ = T(0);
   T descent_ = T(0);
   T threshold_ = T(0);
-  T basis_step_ = T(0);
+  Ascent<T> ascent_;
   bool finite_ = true;
 };
 

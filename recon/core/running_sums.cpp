@@ -89,8 +89,24 @@ COMPUEYE_INLINE Lanes<T, lane_count> taps_of(const RunningSums<T>& a, const Lane
 }
 #endif
 
+/// The products of table t, one a lane, to where their rows of A lie.
 template <std::size_t lane_count, class T>
-COMPUEYE_STAGE void forward_symmetric(const RunningSums<T>& a, const T* scratch, T* y, std::size_t begin,
+COMPUEYE_INLINE void deal_out(const RunningSums<T>& a, std::size_t t, const Lanes<T, lane_count>& products, T* y) {
+  const std::int32_t* row = a.row + lane_count * t;
+  for (std::size_t l = 0; l < lane_count; ++l) {
+    if (row[l] >= 0) y[row[l]] = products[l];
+  }
+}
+
+template <std::size_t lane_count, class T>
+COMPUEYE_STAGE void deal_out_all(const RunningSums<T>& a, const T* products, T* y) {
+  const auto* of_table = reinterpret_cast<const Lanes<T, lane_count>*>(products);
+  for (std::size_t t = 0; t < a.tables; ++t) deal_out<lane_count>(a, t, of_table[t], y);
+}
+
+/// `in_order`: y is the products' place in the order of the tables.
+template <std::size_t lane_count, class T>
+COMPUEYE_STAGE void forward_symmetric(const RunningSums<T>& a, const T* scratch, bool in_order, T* y, std::size_t begin,
                                       std::size_t end) {
   const auto* sums = reinterpret_cast<const Lanes<T, lane_count>*>(scratch);
   for (std::size_t t = begin; t < end; ++t) {
@@ -99,9 +115,10 @@ COMPUEYE_STAGE void forward_symmetric(const RunningSums<T>& a, const T* scratch,
     rows += flipped<1, T, lane_count>(taps_of<lane_count>(a, sums, first(1), first(2)));
     rows += flipped<2, T, lane_count>(taps_of<lane_count>(a, sums, first(2), first(3)));
     rows += flipped<3, T, lane_count>(taps_of<lane_count>(a, sums, first(3), first(4)));
-    const std::int32_t* row = a.row + lane_count * t;
-    for (std::size_t l = 0; l < lane_count; ++l) {
-      if (row[l] >= 0) y[row[l]] = rows[l];
+    if (in_order) {
+      reinterpret_cast<Lanes<T, lane_count>*>(y)[t] = rows;
+    } else {
+      deal_out<lane_count>(a, t, rows, y);
     }
   }
 }
@@ -169,7 +186,7 @@ COMPUEYE_INLINE void clear_sums(const RunningSums<T>& a, T* sums, std::size_t be
 }
 
 /// The steps of A x and A' y, each over a range of folded rows, tables or bands that is independent of the others.
-enum class Step { outward, taps, scatter, inward, inward_transposed };
+enum class Step { outward, taps, taps_in_order, deal_out, scatter, inward, inward_transposed };
 
 template <class T>
 COMPUEYE_INLINE void step_of(Step step, const RunningSums<T>& a, const T* in, T* out, std::size_t begin,
@@ -179,9 +196,13 @@ COMPUEYE_INLINE void step_of(Step step, const RunningSums<T>& a, const T* in, T*
       if (a.rows_at_once == 8) return sum_outward<8>(a, in, out, begin, end);
       return sum_outward<4>(a, in, out, begin, end);
     case Step::taps:
-      if (a.rows_at_once == 8) return forward_symmetric<8>(a, in, out, begin, end);
-      if (a.rows_at_once == 4) return forward_symmetric<4>(a, in, out, begin, end);
+    case Step::taps_in_order:
+      if (a.rows_at_once == 8) return forward_symmetric<8>(a, in, step == Step::taps_in_order, out, begin, end);
+      if (a.rows_at_once == 4) return forward_symmetric<4>(a, in, step == Step::taps_in_order, out, begin, end);
       return forward_each(a, in, out, begin, end);
+    case Step::deal_out:
+      if (a.rows_at_once == 8) return deal_out_all<8>(a, in, out);
+      return deal_out_all<4>(a, in, out);
     case Step::scatter:
       clear_sums(a, out, a.band_row[begin], a.band_row[end]);
       if (a.rows_at_once == 8) return adjoint_symmetric<8>(a, in, out, begin, end);
@@ -204,27 +225,32 @@ COMPUEYE_MULTIVERSION void do_step(Step step, const RunningSums<double>& a, cons
   step_of(step, a, in, out, begin, end);
 }
 
-template <class T>
-void share_step(Step step, const RunningSums<T>& a, const T* in, T* out, std::size_t parts, const Crew& crew) noexcept {
+template <Step step, class T>
+void share_step(const RunningSums<T>& a, const T* in, T* out, std::size_t parts, const Crew& crew) noexcept {
   crew.share(parts, a.image_rows * a.image_cols,
              [&](std::size_t, std::size_t begin, std::size_t end) { do_step(step, a, in, out, begin, end); });
 }
 
 template <class T>
 void forward_of(const RunningSums<T>& a, const T* x, T* y, T* scratch, const Crew& crew) noexcept {
-  share_step(Step::outward, a, x, scratch, a.half_rows(), crew);
+  const std::size_t size = a.image_rows * a.image_cols;
+  share_step<Step::outward>(a, x, scratch, a.half_rows(), crew);
   const std::size_t apart = 4 * a.bands, taps = a.first[a.tables * apart];
-  crew.share(taps, a.image_rows * a.image_cols, [&](std::size_t, std::size_t begin, std::size_t end) {
-    do_step(Step::taps, a, scratch, y, item_at(a.first, apart, a.tables, begin),
+  const bool in_order = a.rows_at_once > 1 && crew.shares(size);
+  T* products = in_order ? scratch + a.scratch_size() : y;
+  crew.share(taps, size, [&](std::size_t, std::size_t begin, std::size_t end) {
+    do_step(in_order ? Step::taps_in_order : Step::taps, a, scratch, products, item_at(a.first, apart, a.tables, begin),
             item_at(a.first, apart, a.tables, end));
   });
+  if (in_order) do_step(Step::deal_out, a, products, y, std::size_t{0}, a.tables);
 }
 
 template <class T>
 void adjoint_of(const RunningSums<T>& a, const T* y, T* x, T* scratch, const Crew& crew) noexcept {
-  share_step(Step::scatter, a, y, scratch, a.bands, crew);
-  share_step(Step::inward, a, scratch, x, a.half_rows(), crew);
-  if (a.rows_at_once == 8) share_step(Step::inward_transposed, a, scratch, x, a.half_rows(), crew);
+  share_step<Step::scatter>(a, y, scratch, a.bands, crew);
+  // Rows last: what follows goes by rows.
+  if (a.rows_at_once == 8) share_step<Step::inward_transposed>(a, scratch, x, a.half_rows(), crew);
+  share_step<Step::inward>(a, scratch, x, a.half_rows(), crew);
 }
 
 template <class T>

@@ -40,6 +40,11 @@ struct RunningSums {
   [[nodiscard]] std::size_t scratch_size() const noexcept {
     return (rows_at_once == 8 ? 8 : 4) * half_rows() * half_cols();
   }
+  /// The same where several workers share the work. Mirrored rows of A lie all over y, and two cores that write to the
+  /// same cache lines spend their time on them: products wait here in the order of the tables.
+  [[nodiscard]] std::size_t shared_scratch_size() const noexcept {
+    return scratch_size() + (rows_at_once > 1 ? rows_at_once * tables : 0);
+  }
 };
 
 /// Bytes of tables that one application reads, and its multiply-adds and additions.
@@ -48,7 +53,7 @@ std::size_t bytes(const RunningSums<double>& a) noexcept;
 std::size_t flops(const RunningSums<float>& a) noexcept;
 std::size_t flops(const RunningSums<double>& a) noexcept;
 
-/// y = A x. Workers share folded rows, then tables.
+/// y = A x. Workers share folded rows, then tables; `scratch` is then shared_scratch_size().
 void forward(const RunningSums<float>& a, const float* x, float* y, float* scratch, const Crew& crew = {}) noexcept;
 void forward(const RunningSums<double>& a, const double* x, double* y, double* scratch, const Crew& crew = {}) noexcept;
 

@@ -106,73 +106,82 @@ COMPUEYE_INLINE void strip_to_rows(const T* __restrict strip, std::size_t pitch,
   }
 }
 
-/// Runs `transform(strip, result, work)` down every column of the upper left rows x cols part of a picture whose rows
-/// are `pitch` apart, in strips begin .. end-1 of strips_of(cols). `scratch` holds three strips of `rows` rows.
-template <class T, class Transform>
-COMPUEYE_INLINE void along_columns(std::size_t rows, std::size_t cols, std::size_t pitch, const T* in, T* out,
-                                   T* scratch, std::size_t begin, std::size_t end, Transform transform) {
-  T *strip = scratch, *result = scratch + rows * lanes, *work = scratch + 2 * rows * lanes;
-  for (std::size_t s = begin; s < end; ++s) {
-    const std::size_t first = s * lanes;
-    const std::size_t width = cols - first < lanes ? cols - first : lanes;
-    if (width == lanes) {
-      for (std::size_t r = 0; r < rows; ++r) {
-        for (std::size_t l = 0; l < lanes; ++l) strip[r * lanes + l] = in[r * pitch + first + l];
-      }
-    } else {
-      for (std::size_t r = 0; r < rows; ++r) {
-        for (std::size_t l = 0; l < width; ++l) strip[r * lanes + l] = in[r * pitch + first + l];
-        for (std::size_t l = width; l < lanes; ++l) strip[r * lanes + l] = T(0);
-      }
-    }
-    transform(strip, result, work);
-    if (width == lanes) {
-      for (std::size_t r = 0; r < rows; ++r) {
-        for (std::size_t l = 0; l < lanes; ++l) out[r * pitch + first + l] = result[r * lanes + l];
-      }
-      continue;
-    }
+/// Columns first .. first+15 of `rows` rows, `width` of them there; lanes beyond are zero.
+template <class T>
+COMPUEYE_INLINE void columns_to_strip(const T* in, std::size_t rows, std::size_t pitch, std::size_t width, T* strip) {
+  if (width == lanes) {
     for (std::size_t r = 0; r < rows; ++r) {
-      for (std::size_t l = 0; l < width; ++l) out[r * pitch + first + l] = result[r * lanes + l];
+      for (std::size_t l = 0; l < lanes; ++l) strip[r * lanes + l] = in[r * pitch + l];
     }
+    return;
+  }
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t l = 0; l < width; ++l) strip[r * lanes + l] = in[r * pitch + l];
+    for (std::size_t l = width; l < lanes; ++l) strip[r * lanes + l] = T(0);
   }
 }
 
-/// The same along every row, in strips of strips_of(rows).
-template <class T, class Transform>
-COMPUEYE_INLINE void along_rows(std::size_t rows, std::size_t cols, std::size_t pitch, const T* in, T* out, T* scratch,
-                                std::size_t begin, std::size_t end, Transform transform) {
-  T *strip = scratch, *result = scratch + cols * lanes, *work = scratch + 2 * cols * lanes;
-  for (std::size_t s = begin; s < end; ++s) {
-    const std::size_t first = s * lanes;
-    const std::size_t height = rows - first < lanes ? rows - first : lanes;
-    if (height == lanes) {
-      rows_to_strip(in + first * pitch, pitch, cols, strip);
-      transform(strip, result, work);
-      strip_to_rows(result, pitch, cols, out + first * pitch);
-      continue;
+template <class T>
+COMPUEYE_INLINE void strip_to_columns(const T* strip, std::size_t rows, std::size_t pitch, std::size_t width, T* out) {
+  if (width == lanes) {
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t l = 0; l < lanes; ++l) out[r * pitch + l] = strip[r * lanes + l];
     }
-    for (std::size_t c = 0; c < cols; ++c) {
-      for (std::size_t l = 0; l < height; ++l) strip[c * lanes + l] = in[(first + l) * pitch + c];
-      for (std::size_t l = height; l < lanes; ++l) strip[c * lanes + l] = T(0);
-    }
-    transform(strip, result, work);
-    for (std::size_t c = 0; c < cols; ++c) {
-      for (std::size_t l = 0; l < height; ++l) out[(first + l) * pitch + c] = result[c * lanes + l];
-    }
+    return;
+  }
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t l = 0; l < width; ++l) out[r * pitch + l] = strip[r * lanes + l];
   }
 }
 
+/// The same of `height` rows; a whole strip's are turned as vectors.
+template <class T>
+COMPUEYE_INLINE void some_rows_to_strip(const T* in, std::size_t height, std::size_t pitch, std::size_t cols,
+                                        T* strip) {
+  if (height == lanes) return rows_to_strip(in, pitch, cols, strip);
+  for (std::size_t c = 0; c < cols; ++c) {
+    for (std::size_t l = 0; l < height; ++l) strip[c * lanes + l] = in[l * pitch + c];
+    for (std::size_t l = height; l < lanes; ++l) strip[c * lanes + l] = T(0);
+  }
+}
+
+template <class T>
+COMPUEYE_INLINE void strip_to_some_rows(const T* strip, std::size_t height, std::size_t pitch, std::size_t cols,
+                                        T* out) {
+  if (height == lanes) return strip_to_rows(strip, pitch, cols, out);
+  for (std::size_t c = 0; c < cols; ++c) {
+    for (std::size_t l = 0; l < height; ++l) out[l * pitch + c] = strip[c * lanes + l];
+  }
+}
+
+/// Columns or rows of strip s of `count`.
+[[nodiscard]] constexpr std::size_t strip_width(std::size_t s, std::size_t count) noexcept {
+  return count - s * lanes < lanes ? count - s * lanes : lanes;
+}
+
+/// Runs `transform(strip, result, work)` down every column of the upper left rows x cols part of a picture whose rows
+/// are `pitch` apart. `scratch` holds three strips of `rows` rows.
 template <class T, class Transform>
 COMPUEYE_INLINE void along_columns(std::size_t rows, std::size_t cols, std::size_t pitch, const T* in, T* out,
                                    T* scratch, Transform transform) {
-  along_columns(rows, cols, pitch, in, out, scratch, std::size_t{0}, strips_of(cols), transform);
+  T *strip = scratch, *result = scratch + rows * lanes, *work = scratch + 2 * rows * lanes;
+  for (std::size_t s = 0; s < strips_of(cols); ++s) {
+    columns_to_strip(in + s * lanes, rows, pitch, strip_width(s, cols), strip);
+    transform(strip, result, work);
+    strip_to_columns(result, rows, pitch, strip_width(s, cols), out + s * lanes);
+  }
 }
 
+/// The same along every row.
 template <class T, class Transform>
 COMPUEYE_INLINE void along_rows(std::size_t rows, std::size_t cols, std::size_t pitch, const T* in, T* out, T* scratch,
                                 Transform transform) {
-  along_rows(rows, cols, pitch, in, out, scratch, std::size_t{0}, strips_of(rows), transform);
+  T *strip = scratch, *result = scratch + cols * lanes, *work = scratch + 2 * cols * lanes;
+  for (std::size_t s = 0; s < strips_of(rows); ++s) {
+    some_rows_to_strip(in + s * lanes * pitch, strip_width(s, rows), pitch, cols, strip);
+    transform(strip, result, work);
+    strip_to_some_rows(result, strip_width(s, rows), pitch, cols, out + s * lanes * pitch);
+  }
 }
 
 }  // namespace compueye::recon::core

@@ -1,6 +1,7 @@
 #include "recon/core/weighted_dual_step.hpp"
 
 #include "recon/core/proximal.hpp"
+#include "recon/core/relaxed_steps.hpp"
 #include "recon/core/vector_sums.hpp"
 
 namespace compueye::recon::core {
@@ -39,13 +40,12 @@ bool WeightedDualStep<T>::factor_substitution() noexcept {
 template <class T>
 void WeightedDualStep<T>::apply(const T* x, T* u) noexcept {
   const std::size_t rows = problem_->a.rows;
-  samples_.residual(x, residual_);
-  for (std::size_t i = 0; i < rows; ++i) residual_[i] += u[i];
+  samples_.forward(x, residual_);
+  add_dual_to_residual(samples_.values(), samples_.weights(), u, residual_, rows);
   for (std::size_t s = 0; s < reweighted_.count(); ++s) {
     const std::size_t i = reweighted_.rows()[s];
-    residual_[i] = is_missing(i) ? T(0) : residual_[i] + (u[i] / samples_.weights()[i] - u[i]);
+    residual_[i] = is_missing(i) ? T(0) : flushed(residual_[i] + (u[i] / samples_.weights()[i] - u[i]));
   }
-  flush_tiny(residual_, rows);
   core::apply(problem_->dual_step, level_, residual_, step_, scratch_);
   if (reweighted_.count() > 0) {
     for (std::size_t s = 0; s < reweighted_.count(); ++s) {
@@ -54,11 +54,10 @@ void WeightedDualStep<T>::apply(const T* x, T* u) noexcept {
     reweighted_.replace(residual_);
     core::apply(problem_->dual_step, level_, residual_, step_, scratch_);
   }
-  for (std::size_t i = 0; i < rows; ++i) u[i] -= problem_->relaxation * step_[i];
+  step_down(step_, problem_->relaxation, u, rows);
   for (std::size_t s = 0; s < reweighted_.count(); ++s) {
     if (is_missing(reweighted_.rows()[s])) u[reweighted_.rows()[s]] = T(0);
   }
-  flush_tiny(u, rows);
 }
 
 template <class T>
