@@ -153,12 +153,54 @@ expect "apt-get that claims success" 1 'still not installed'
 machine "$everything"
 run install-packages --check nonsense
 expect "an unknown group" 2 "no package group 'nonsense'"
-for script in count-instructions install-packages build-preset demo mcu test tidy; do
+for script in aarch64-root count-instructions install-packages build-preset demo mcu test tidy; do
   run "$script" --help
   expect "$script --help has an example" 0 "^Example: tools/$script"
   run "$script" --nonsense
   expect "$script refuses an unknown option" 2 "unknown option '--nonsense'"
 done
+
+# The archives of another processor, asked for without a word to this machine's package system.
+folder=$project/build/aarch64-root
+arm64_machine() {
+  machine "$everything"
+  rm -rf "$folder"
+  shim apt-get <<END
+echo "\$*" >>"$state/apt-calls"
+for word; do [[ \$word != Dir::Cache=* ]] || touch "\${word#Dir::Cache=}/archives/libpng-dev_1_arm64.deb"; done
+END
+  shim dpkg-deb <<'END'
+mkdir -p "$3/usr/lib" && ln -s /lib/libm.so.6 "$3/usr/lib/libm.so"
+END
+}
+arm64_machine
+run aarch64-root
+expect "a folder for arm64" 0 'build/aarch64-root: 1 package'
+output=$(readlink "$folder/usr/lib/libm.so")
+expect "... whose links stay inside" 0 '^\.\./\.\./lib/libm\.so\.6$'
+calls 'Dir::State=.*APT::Architecture=arm64 .*--download-only install .*libusb-1.0-0-dev.* umockdev$'
+expect "... with records of its own, and nothing installed" 0 '^1$'
+calls ' install '
+expect "... in one go" 0 '^1$'
+run aarch64-root
+expect "the second time there is nothing to fetch" 0 ""
+run aarch64-root --renew
+expect "--renew fetches again" 0 'build/aarch64-root: 1 package'
+arm64_machine
+shim dpkg-deb <<<'exit 2'
+run aarch64-root
+expect "a package that does not unpack" 1 'cannot unpack .*libpng-dev_1_arm64.deb'
+run aarch64-root
+expect "... leaves no folder that would pass for whole" 1 'cannot unpack'
+arm64_machine
+shim apt-get <<'END'
+echo "E: Unable to locate package umockdev"
+exit 100
+END
+run aarch64-root
+expect "an archive without arm64" 1 'does not get these packages for arm64'
+run aarch64-root umockdev
+expect "aarch64-root takes no packages" 2 "unknown argument 'umockdev'"
 run test --preset fast
 expect "test refuses an unknown preset" 2 "unknown preset 'fast'"
 run test --filter
