@@ -46,7 +46,7 @@ class SmallHost {
 
   hal::Result<std::size_t> request(Request request, std::span<const std::byte> payload = {},
                                    std::span<std::byte> reply = {}) {
-    return line_.control(number(request), payload, reply, time_.now_ns() + control_deadline_ns);
+    return line_.control(number(request), payload, reply, time_.now_ns() + request_ns);
   }
   hal::Result<DeviceDescriptor> identify() {
     DescriptorPages pages(is_hid() ? hid_page_bytes : usb_page_bytes, line_.describe().bus);
@@ -126,6 +126,7 @@ class SmallHost {
 
   int bits, channels;
   std::uint32_t frame_rate_mhz = 100'000;
+  std::int64_t request_ns = control_deadline_ns;  ///< how long a request may take
   PacketStream stream;
   FrameAssembler packets;
   HidAssembler reports;
