@@ -57,7 +57,7 @@ Stream make_stream(protocol::SampleFormat format) {
   std::vector<std::byte> packet(protocol::least_packet_bytes + protocol::most_payload_bytes);
   for (std::uint32_t frame = 0; stream.bytes.size() < stream_bytes; ++frame, ++stream.frames) {
     for (std::size_t k = 0; k < codes.size(); ++k) {
-      codes[k] = static_cast<std::int32_t>((frame * 31U + k * 2654435761U) & ((1U << stream.bits) - 1U));
+      codes[k] = static_cast<std::int32_t>((std::size_t{frame} * 31U + k * 2654435761U) & ((1U << stream.bits) - 1U));
     }
     protocol::FrameHeader header;
     header.seq = header.frame = frame;

@@ -35,14 +35,15 @@ class WorkerThreads {
   static void run(void* context, core::Crew::Task task, void* data) noexcept;
   void work(std::size_t worker) noexcept;
 
-  std::vector<std::thread> threads_;
-  std::atomic<bool> busy_{false};
-  // One cache line, since a core that finds a new turn there wants all of it.
+  // Two cache lines: what is handed over, in one, since a core that finds a new turn there wants all of it; and what
+  // comes back.
   alignas(64) std::atomic<std::uint32_t> turn_{0};  // counted up when there is work
   bool stopping_ = false;
   core::Crew::Task task_ = nullptr;
   void* data_ = nullptr;
+  std::vector<std::thread> threads_;
   alignas(64) std::atomic<std::uint32_t> working_{0};  // threads that have not finished this turn
+  std::atomic<bool> busy_{false};
 };
 
 }  // namespace compueye::recon

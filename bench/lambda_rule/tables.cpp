@@ -66,6 +66,7 @@ void print_second_passes(const Case& c, const std::vector<Sweep>& sweeps) {
                  [sigma](const Sweep& s) { return s.sigma == sigma; });
     const auto over_best = [&here](double Sweep::*nmse) {
       std::vector<double> ratios;
+      ratios.reserve(here.size());
       for (const Sweep& s : here) ratios.push_back(ratio(s.*nmse, s.best()));
       return summary(ratios);
     };

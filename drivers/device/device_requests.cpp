@@ -38,7 +38,7 @@ hal::Result<protocol::Status> DeviceRequests::status(std::int64_t until_ns) {
 }
 
 hal::Result<void> DeviceRequests::page(protocol::DescriptorPages& pages, std::int64_t until_ns) {
-  std::array<std::byte, protocol::most_control_bytes> page;
+  std::array<std::byte, protocol::most_control_bytes> page{};
   const auto into = std::span(page).first(std::min(pages.reply_bytes(), page.size()));
   const auto got = request(Request::get_desc, pages.request(), into, until_ns);
   if (!got) return tl::unexpected(got.error());

@@ -24,7 +24,7 @@ class DeviceRequests {
   DeviceRequests(hal::ByteTransport& transport, hal::Clock& clock) noexcept : transport_(transport), clock_(clock) {}
 
   /// One without payload and reply: START, STOP, RESET_PIPES.
-  [[nodiscard]] hal::Result<void> order(protocol::Request request, std::int64_t until_ns);
+  [[nodiscard]] hal::Result<void> order(protocol::Request what, std::int64_t until_ns);
   /// The same in every version of the protocol, which is not judged.
   [[nodiscard]] hal::Result<protocol::PingReply> ping(std::int64_t until_ns);
   [[nodiscard]] hal::Result<protocol::Status> status(std::int64_t until_ns);

@@ -53,6 +53,8 @@ class DeviceSource final : public hal::SampleSource {
   [[nodiscard]] static hal::Result<std::unique_ptr<DeviceSource>> create(DeviceSettings settings,
                                                                          std::unique_ptr<hal::ByteTransport> transport,
                                                                          hal::Clock& clock);
+  DeviceSource(const DeviceSource&) = delete;
+  DeviceSource& operator=(const DeviceSource&) = delete;
   ~DeviceSource() override;
 
   /// Since the last start(), like account().
