@@ -77,8 +77,8 @@ COMPUEYE_INLINE void halving_inverse(const T* c, std::size_t length, const T* in
 /// With c = cos and s = sin of pi (2r+1) / (4m), u_r = c x_r + s x_(m-1-r) and v_r = (-1)^r (s x_r - c x_(m-1-r)):
 /// the sum and the difference of coefficients 2k-1 and 2k are twice the DCT-II of u at k and of v at m/2-k.
 template <class T>
-COMPUEYE_INLINE void rotated_forward(const T* rotation, const T* halving, std::size_t m, const T* difference, T* pair,
-                                     T* out, std::size_t stride, T* work) {
+COMPUEYE_STAGE void rotated_forward(const T* rotation, const T* halving, std::size_t m, const T* difference, T* pair,
+                                    T* out, std::size_t stride, T* work) {
   const std::size_t h = m / 2;
   T *u = pair, *v = pair + h * lanes;
   for (std::size_t r = 0; r < h; ++r) {
@@ -111,8 +111,8 @@ COMPUEYE_INLINE void rotated_forward(const T* rotation, const T* halving, std::s
 /// The transpose of rotated_forward: m rows of `difference` from coefficients that are 2 * stride rows apart, the first
 /// at `in`. `difference` is the first m of `work`, which takes 5/2 m rows.
 template <class T>
-COMPUEYE_INLINE void rotated_inverse(const T* rotation, const T* halving, std::size_t m, const T* in, std::size_t apart,
-                                     T* work) {
+COMPUEYE_STAGE void rotated_inverse(const T* rotation, const T* halving, std::size_t m, const T* in, std::size_t apart,
+                                    T* work) {
   const std::size_t h = m / 2;
   T *of_u = work, *of_v = work + h * lanes;
   const T root_two = T(1.4142135623730951);
@@ -142,7 +142,7 @@ COMPUEYE_INLINE void rotated_inverse(const T* rotation, const T* halving, std::s
 
 /// strip (length rows, used up) -> out (length rows); `work` takes two times length rows.
 template <class T>
-COMPUEYE_INLINE void strip_forward(const DctTable<T>& table, T* strip, T* __restrict out, T* work) {
+COMPUEYE_STAGE void strip_forward(const DctTable<T>& table, T* strip, T* __restrict out, T* work) {
   const T* rotation = table.values;
   std::size_t n = table.length;
   std::size_t stride = 1;
@@ -163,7 +163,7 @@ COMPUEYE_INLINE void strip_forward(const DctTable<T>& table, T* strip, T* __rest
 
 /// The transpose of strip_forward: levels undone from the innermost outward.
 template <class T>
-COMPUEYE_INLINE void strip_inverse(const DctTable<T>& table, const T* __restrict strip, T* __restrict out, T* work) {
+COMPUEYE_STAGE void strip_inverse(const DctTable<T>& table, const T* __restrict strip, T* __restrict out, T* work) {
   const T* rotation = table.values;
   std::size_t n = table.length;
   std::size_t stride = 1;

@@ -108,7 +108,7 @@ COMPUEYE_INLINE void strip_to_rows(const T* __restrict strip, std::size_t pitch,
 
 /// Columns first .. first+15 of `rows` rows, `width` of them there; lanes beyond are zero.
 template <class T>
-COMPUEYE_INLINE void columns_to_strip(const T* in, std::size_t rows, std::size_t pitch, std::size_t width, T* strip) {
+COMPUEYE_STAGE void columns_to_strip(const T* in, std::size_t rows, std::size_t pitch, std::size_t width, T* strip) {
   if (width == lanes) {
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t l = 0; l < lanes; ++l) strip[r * lanes + l] = in[r * pitch + l];
@@ -122,7 +122,7 @@ COMPUEYE_INLINE void columns_to_strip(const T* in, std::size_t rows, std::size_t
 }
 
 template <class T>
-COMPUEYE_INLINE void strip_to_columns(const T* strip, std::size_t rows, std::size_t pitch, std::size_t width, T* out) {
+COMPUEYE_STAGE void strip_to_columns(const T* strip, std::size_t rows, std::size_t pitch, std::size_t width, T* out) {
   if (width == lanes) {
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t l = 0; l < lanes; ++l) out[r * pitch + l] = strip[r * lanes + l];
@@ -134,11 +134,17 @@ COMPUEYE_INLINE void strip_to_columns(const T* strip, std::size_t rows, std::siz
   }
 }
 
+/// Turning rows four by four is worth it where there are registers for it.
+#if defined(COMPUEYE_CORTEX_M)
+inline constexpr bool turns_vectors = false;
+#else
+inline constexpr bool turns_vectors = true;
+#endif
+
 /// The same of `height` rows; a whole strip's are turned as vectors.
 template <class T>
-COMPUEYE_INLINE void some_rows_to_strip(const T* in, std::size_t height, std::size_t pitch, std::size_t cols,
-                                        T* strip) {
-  if (height == lanes) return rows_to_strip(in, pitch, cols, strip);
+COMPUEYE_STAGE void some_rows_to_strip(const T* in, std::size_t height, std::size_t pitch, std::size_t cols, T* strip) {
+  if (turns_vectors && height == lanes) return rows_to_strip(in, pitch, cols, strip);
   for (std::size_t c = 0; c < cols; ++c) {
     for (std::size_t l = 0; l < height; ++l) strip[c * lanes + l] = in[l * pitch + c];
     for (std::size_t l = height; l < lanes; ++l) strip[c * lanes + l] = T(0);
@@ -146,9 +152,9 @@ COMPUEYE_INLINE void some_rows_to_strip(const T* in, std::size_t height, std::si
 }
 
 template <class T>
-COMPUEYE_INLINE void strip_to_some_rows(const T* strip, std::size_t height, std::size_t pitch, std::size_t cols,
-                                        T* out) {
-  if (height == lanes) return strip_to_rows(strip, pitch, cols, out);
+COMPUEYE_STAGE void strip_to_some_rows(const T* strip, std::size_t height, std::size_t pitch, std::size_t cols,
+                                       T* out) {
+  if (turns_vectors && height == lanes) return strip_to_rows(strip, pitch, cols, out);
   for (std::size_t c = 0; c < cols; ++c) {
     for (std::size_t l = 0; l < height; ++l) out[l * pitch + c] = strip[c * lanes + l];
   }
