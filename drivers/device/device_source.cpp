@@ -21,7 +21,7 @@ std::size_t frame_bytes(DeviceBus bus, const protocol::DeviceDescriptor& device,
   if (bus == DeviceBus::hid)
     return static_cast<std::size_t>(protocol::hid_parts(device.channels)) * protocol::hid_report_bytes;
   const int in_packet = std::max(protocol::channels_in(format, device.most_payload), 1);
-  const auto packets = static_cast<std::size_t>((device.channels - 1) / in_packet + 1);
+  const auto packets = static_cast<std::size_t>((device.channels - 1) / in_packet) + 1;
   return protocol::packed_bytes(format, static_cast<std::size_t>(device.channels)) +
          packets * protocol::least_packet_bytes;
 }

@@ -14,12 +14,12 @@ std::size_t cobs_encode(std::span<const std::byte> data, std::span<std::byte> in
     code_at = out++;
     code = 1;
   };
-  for (std::size_t k = 0; k < data.size(); ++k) {
+  for (const std::byte byte : data) {
     if (code == 0xFF) close_block();
-    if (data[k] == std::byte{0}) {
+    if (byte == std::byte{0}) {
       close_block();
     } else {
-      into[out++] = data[k];
+      into[out++] = byte;
       ++code;
     }
   }

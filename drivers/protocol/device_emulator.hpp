@@ -40,11 +40,11 @@ using SampleGenerator = std::function<void(const EmulatedExposure&, std::span<st
 struct EmulatorSettings {
   DeviceDescriptor descriptor;
   EmulatedBus bus = EmulatedBus::usb;
-  std::size_t fifo_bytes = 256 * 1024;  ///< at least one frame of the widest format offered
-  double link_bytes_per_s = 0.0;        ///< 0: 35e6 on USB, 64000 on HID (a report a millisecond)
-  bool events = true;                   ///< USB: log and event packets between the data
-  std::int64_t boot_ns = 50'000'000;    ///< from power-on or reboot to the first answer
-  std::uint64_t seed = 1;               ///< of damaged bits and garbage
+  std::size_t fifo_bytes = std::size_t{256} * 1024;  ///< at least one frame of the widest format offered
+  double link_bytes_per_s = 0.0;                     ///< 0: 35e6 on USB, 64000 on HID (a report a millisecond)
+  bool events = true;                                ///< USB: log and event packets between the data
+  std::int64_t boot_ns = 50'000'000;                 ///< from power-on or reboot to the first answer
+  std::uint64_t seed = 1;                            ///< of damaged bits and garbage
   std::vector<EmulatorFault> faults;
 };
 
@@ -153,7 +153,7 @@ class DeviceEmulator {
   void begin_stream(std::int64_t now_ns, std::uint32_t config_id) noexcept;
   void stop() noexcept;
   Transfer set_illumination(std::int64_t now_ns, std::span<const std::byte> payload) noexcept;
-  Transfer descriptor_page(std::span<const std::byte> payload, std::span<std::byte> reply) const noexcept;
+  [[nodiscard]] Transfer descriptor_page(std::span<const std::byte> payload, std::span<std::byte> reply) const noexcept;
   [[nodiscard]] Status status(std::int64_t now_ns) const noexcept;
 
   // Frames: emulator_frames.cpp

@@ -70,13 +70,13 @@ hal::Result<std::size_t> EmulatedTransport::feature_reports(std::uint8_t request
   const auto exchange = hid_exchange(request, payload, reply.size());
   if (!exchange) return tl::unexpected(exchange.error());
   if (exchange->has_set) {
-    const auto set = outcome(device_.set_feature(clock_.now_ns(), exchange->set), "a feature report", deadline_ns);
+    auto set = outcome(device_.set_feature(clock_.now_ns(), exchange->set), "a feature report", deadline_ns);
     if (!set) return set;
   }
   if (!exchange->has_get) return std::size_t{0};
   HidReportBytes report{};
-  const auto got = outcome(device_.get_feature(clock_.now_ns(), static_cast<std::uint8_t>(exchange->get), report),
-                           "a feature report", deadline_ns);
+  auto got = outcome(device_.get_feature(clock_.now_ns(), static_cast<std::uint8_t>(exchange->get), report),
+                     "a feature report", deadline_ns);
   if (!got) return got;
   return hid_reply(request, payload, std::span<const std::byte>(report).first(*got), reply);
 }

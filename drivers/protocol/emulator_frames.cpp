@@ -14,10 +14,10 @@ constexpr std::string_view greeting = "streaming";
 }  // namespace
 
 void DeviceEmulator::expose(std::int64_t ready_ns) {
-  for (std::size_t k = 0; k < faults_.size(); ++k) {
-    if (faults_[k].begun || !faults_[k].fault.at_frame || *faults_[k].fault.at_frame > frame_) continue;
-    faults_[k].begun = true;
-    begin(faults_[k].fault, ready_ns);
+  for (auto& scheduled : faults_) {
+    if (scheduled.begun || !scheduled.fault.at_frame || *scheduled.fault.at_frame > frame_) continue;
+    scheduled.begun = true;
+    begin(scheduled.fault, ready_ns);
     // A device that has started anew exposes its frames at other times.
     if (state_ != DeviceState::streaming || frame_ready_ns() != ready_ns) return;
   }

@@ -46,7 +46,7 @@ class HidAssembler {
   void set_time(const Status& status) noexcept;
 
   /// Takes one report as read(): exactly 64 bytes, its id first. Blocks returned by take() end here.
-  void push(std::span<const std::byte> report) noexcept;
+  void push(std::span<const std::byte> bytes) noexcept;
   [[nodiscard]] std::optional<hal::SampleBlock> take() noexcept { return builder_.take(); }
   void flush() noexcept;
   void stop(hal::DropReason reason = hal::DropReason::stopped) noexcept { builder_.abandon(reason); }

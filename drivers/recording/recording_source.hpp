@@ -42,6 +42,8 @@ class RecordingSource final : public hal::SampleSource {
   [[nodiscard]] static hal::Result<std::unique_ptr<RecordingSource>> create(RecordingSettings settings,
                                                                             hal::SampleSource& source,
                                                                             hal::Clock& clock);
+  RecordingSource(const RecordingSource&) = delete;
+  RecordingSource& operator=(const RecordingSource&) = delete;
   ~RecordingSource() override;
 
   /// Where the current or last run goes.

@@ -127,7 +127,7 @@ hal::Result<void> RecordingWriter::finish(Ending ending, std::int64_t at_ns, con
   head.arrival_ns = std::clamp(at_ns, std::int64_t{0}, most_arrival_ns);
   head.books = books_of(account, frames_, unrecorded);
   hal::Result<void> done;
-  std::array<std::byte, end_block_bytes> bytes;
+  std::array<std::byte, end_block_bytes> bytes{};
   if (!failed_) {
     if (encode_end_block(head, bytes)) {
       done = write(bytes);

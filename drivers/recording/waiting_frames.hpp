@@ -28,6 +28,7 @@ class WaitingFrames {
   WaitingFrames(std::size_t capacity, std::size_t channels);
   WaitingFrames(const WaitingFrames&) = delete;
   WaitingFrames& operator=(const WaitingFrames&) = delete;
+  ~WaitingFrames() = default;
 
   /// Eye's thread: the slot to fill, nullptr when none is free; with `wait` it waits for one.
   [[nodiscard]] WaitingFrame* claim(bool wait) noexcept;

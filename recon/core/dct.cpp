@@ -210,7 +210,7 @@ template <class T>
 COMPUEYE_INLINE void transform_strip(const Pass<T>& pass, const DctTable<T>& table, T* strip, T* result, T* work,
                                      T* dual) {
   if (pass.forward) strip_forward(table, strip, result, work);
-  if (pass.ascent != nullptr) {
+  if (pass.ascent != nullptr && dual != nullptr) {
     const Ascent<T> ascent = *pass.ascent;
     for (std::size_t k = 0; k < table.length * lanes; ++k) dual[k] = ascent.moved(dual[k], result[k]);
   }
