@@ -165,9 +165,8 @@ std::string text_of(const Measured& measured) {
                fmt::format("{:.2f}", s.alone_us / s.by_two_us)});
   }
   return fmt::format(
-      "one core reads memory at {:.2f} GB/s; a cache line goes to the other core and back in {:.0f} ns, at the end "
-      "{:.0f} "
-      "ns\n\n{}",
+      "one core reads memory at {:.2f} GB/s\n"
+      "a cache line goes to the other core and back in {:.0f} ns, at the end {:.0f} ns\n\n{}",
       measured.bandwidth, measured.round_trip_before_ns, measured.round_trip_after_ns, table.text());
 }
 

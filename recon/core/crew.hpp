@@ -21,21 +21,26 @@ struct Crew {
   /// Pictures of fewer pixels are done before the workers have met.
   static constexpr std::size_t least_worth = std::size_t{96} * 96;
 
-  [[nodiscard]] bool shares(std::size_t size) const noexcept { return workers > 1 && size >= least_worth; }
+#if defined(COMPUEYE_CORTEX_M)
+  static constexpr bool always_alone = true;
+#else
+  static constexpr bool always_alone = false;
+#endif
+
+  [[nodiscard]] bool shares(std::size_t size) const noexcept {
+    return !always_alone && workers > 1 && size >= least_worth;
+  }
 
   /// Calls work(worker, begin, end) so that every part of 0 .. parts-1 is in one range; in this thread alone where
   /// `size` elements are too few to be worth it. What a worker does must not depend on what another does in the same
   /// call. Worker w of n has parts*w/n .. parts*(w+1)/n - 1.
   template <class Work>
   void share(std::size_t parts, std::size_t size, const Work& work) const noexcept {
-#if defined(COMPUEYE_CORTEX_M)
-    static_cast<void>(size);
-    return work(std::size_t{0}, std::size_t{0}, parts);  // nobody else is there, and no call goes through a pointer
-#else
     if (!shares(size)) return work(std::size_t{0}, std::size_t{0}, parts);
-    Shared<Work> shared{work, parts, workers};
-    run(context, &Shared<Work>::part, &shared);
-#endif
+    if constexpr (!always_alone) {  // no call through a pointer where it could not be
+      Shared<Work> shared{work, parts, workers};
+      run(context, &Shared<Work>::part, &shared);
+    }
   }
 
   /// The same for rows or columns of a picture: the first worker has those around the middle, the next ones those
@@ -54,7 +59,7 @@ struct Crew {
 
  private:
   template <class Work>
-  struct alignas(64) Shared {  // with what the work refers to, in as few cache lines as can be
+  struct alignas(64) Shared {  // the work itself, not where it is: one cache line less for another core to fetch
     Work work;
     std::size_t parts, workers;
     static void part(void* data, std::size_t worker) noexcept {

@@ -195,26 +195,29 @@ COMPUEYE_STAGE void strip_inverse(const DctTable<T>& table, const T* __restrict 
   }
 }
 
-/// One pass over strips of columns or of rows, in either direction or there and back.
+/// One pass over strips of columns or of rows, in either direction or there and back by way of a dual in strips.
 template <class T>
 struct Pass {
   bool columns = false;
   bool forward = false;
   bool inverse = false;
-  const Ascent<T>* ascent = nullptr;  ///< between there and back
-  T* dual = nullptr;                  ///< in strips; what goes back, if there is one
+  T* dual = nullptr;
+  Ascent<T> ascent = {};
 };
 
-/// `strip` -> `result`, by way of the strip of the dual at `dual`.
+/// `strip` -> `result`
 template <class T>
 COMPUEYE_INLINE void transform_strip(const Pass<T>& pass, const DctTable<T>& table, T* strip, T* result, T* work,
-                                     T* dual) {
+                                     std::size_t first) {
   if (pass.forward) strip_forward(table, strip, result, work);
-  if (pass.ascent != nullptr && dual != nullptr) {
-    const Ascent<T> ascent = *pass.ascent;
+  const T* back = strip;
+  if (pass.dual != nullptr) {
+    T* dual = pass.dual + first;
+    const Ascent<T> ascent = pass.ascent;
     for (std::size_t k = 0; k < table.length * lanes; ++k) dual[k] = ascent.moved(dual[k], result[k]);
+    back = dual;
   }
-  if (pass.inverse) strip_inverse(table, dual != nullptr ? dual : strip, result, work);
+  if (pass.inverse) strip_inverse(table, back, result, work);
 }
 
 template <class T>
@@ -228,10 +231,10 @@ COMPUEYE_INLINE void transform_strips(const Pass<T>& pass, const Dct2d<T>& psi, 
     const std::size_t width = strip_width(s, pass.columns ? cols : rows), at = s * lanes * (pass.columns ? 1 : cols);
     if (pass.columns) {
       columns_to_strip(in + at, rows, cols, width, strip);
-    } else if (pass.forward || pass.dual == nullptr) {
+    } else {
       some_rows_to_strip(in + at, width, cols, cols, strip);
     }
-    transform_strip(pass, table, strip, result, work, pass.dual == nullptr ? nullptr : pass.dual + s * size);
+    transform_strip(pass, table, strip, result, work, s * size);
     if (pass.columns) {
       strip_to_columns(result, rows, cols, width, out + at);
     } else {
@@ -267,15 +270,15 @@ void forward_of(const Dct2d<T>& psi, const T* in, T* out, T* scratch) noexcept {
 }
 
 template <class T>
-void inverse_of(const Dct2d<T>& psi, const T* in, T* dual, T* out, T* scratch) noexcept {
-  share_pass<T>({.inverse = true, .dual = dual}, psi, in, out, scratch);
+void inverse_of(const Dct2d<T>& psi, const T* in, T* out, T* scratch) noexcept {
+  share_pass<T>({.inverse = true}, psi, in, out, scratch);
   share_pass<T>({.columns = true, .inverse = true}, psi, out, out, scratch);
 }
 
 template <class T>
 void ascend_of(const Dct2d<T>& psi, const Ascent<T>& ascent, const T* in, T* dual, T* out, T* scratch) noexcept {
   share_pass<T>({.columns = true, .forward = true}, psi, in, out, scratch);
-  share_pass<T>({.forward = true, .inverse = true, .ascent = &ascent, .dual = dual}, psi, out, out, scratch);
+  share_pass<T>({.forward = true, .inverse = true, .dual = dual, .ascent = ascent}, psi, out, out, scratch);
   share_pass<T>({.columns = true, .inverse = true}, psi, out, out, scratch);
 }
 
@@ -288,16 +291,10 @@ void dct_forward(const Dct2d<double>& psi, const double* in, double* out, double
   forward_of(psi, in, out, scratch);
 }
 void dct_inverse(const Dct2d<float>& psi, const float* in, float* out, float* scratch) noexcept {
-  inverse_of<float>(psi, in, nullptr, out, scratch);
+  inverse_of(psi, in, out, scratch);
 }
 void dct_inverse(const Dct2d<double>& psi, const double* in, double* out, double* scratch) noexcept {
-  inverse_of<double>(psi, in, nullptr, out, scratch);
-}
-void dct_inverse_of_strips(const Dct2d<float>& psi, float* dual, float* out, float* scratch) noexcept {
-  inverse_of<float>(psi, out, dual, out, scratch);
-}
-void dct_inverse_of_strips(const Dct2d<double>& psi, double* dual, double* out, double* scratch) noexcept {
-  inverse_of<double>(psi, out, dual, out, scratch);
+  inverse_of(psi, in, out, scratch);
 }
 void dct_ascend(const Dct2d<float>& psi, const Ascent<float>& ascent, const float* in, float* dual, float* out,
                 float* scratch) noexcept {

@@ -92,8 +92,4 @@ void dct_ascend(const Dct2d<float>& psi, const Ascent<float>& ascent, const floa
 void dct_ascend(const Dct2d<double>& psi, const Ascent<double>& ascent, const double* in, double* dual, double* out,
                 double* scratch) noexcept;
 
-/// out = Psi' dual of one in strips, which stays as it is.
-void dct_inverse_of_strips(const Dct2d<float>& psi, float* dual, float* out, float* scratch) noexcept;
-void dct_inverse_of_strips(const Dct2d<double>& psi, double* dual, double* out, double* scratch) noexcept;
-
 }  // namespace compueye::recon::core

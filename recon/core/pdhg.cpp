@@ -45,14 +45,14 @@ class Pdhg {
     }
     info.warm = warm_start_.allowed(dual_step_);
     if (info.warm) {
-      synthesise_dual();
+      go_on();
     } else {
       start_cold();
     }
     for (int k = 1; k < problem_.point.iterations; ++k) {
       set_penalty(k - 1);
       fall();
-      rise();
+      rise(gradient_);
     }
     finish(info);
     deliver(gradient_, finite_, n_, info, x);
@@ -67,11 +67,9 @@ class Pdhg {
     for (std::size_t k = 0; k < dual_count_; ++k) basis_dual_[k] = T(0);
   }
 
-  /// gradient = Psi'q
-  void synthesise_dual() noexcept {
-    if (in_strips_) return dct_inverse_of_strips(problem_.psi.dct, basis_dual_, gradient_, scratch_);
-    if (sparse_basis_) return synthesise(problem_.psi, basis_dual_, gradient_, scratch_);
-    for (std::size_t k = 0; k < n_; ++k) gradient_[k] = T(0);
+  /// The last frame left Psi'q in ahead_.
+  void go_on() noexcept {
+    for (std::size_t k = 0; k < n_; ++k) gradient_[k] = ahead_[k];
   }
 
   void set_penalty(int done) noexcept {
@@ -93,17 +91,14 @@ class Pdhg {
     });
   }
 
-  /// Both duals, then gradient = Psi'q
-  void rise() noexcept {
+  /// Both duals, then back = Psi'q, which may be ahead_ itself
+  void rise(T* back) noexcept {
     dual_step_.apply(ahead_, row_dual_);
-    if (in_strips_) return dct_ascend(problem_.psi.dct, ascent_, ahead_, basis_dual_, gradient_, scratch_);
-    raise_basis_dual();
-    synthesise_dual();
-  }
-
-  void raise_basis_dual() noexcept {
-    if (in_strips_) return dct_ascend(problem_.psi.dct, ascent_, ahead_, basis_dual_, coefficients_, scratch_);
-    if (!sparse_basis_) return;
+    if (in_strips_) return dct_ascend(problem_.psi.dct, ascent_, ahead_, basis_dual_, back, scratch_);
+    if (!sparse_basis_) {
+      for (std::size_t k = 0; k < n_; ++k) back[k] = T(0);
+      return;
+    }
     analyse(problem_.psi, ahead_, coefficients_, scratch_);
     const std::size_t cols = problem_.image_cols;
     problem_.crew.share_from_middle(problem_.image_rows, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -111,6 +106,7 @@ class Pdhg {
         ascend(coefficients_ + at, ascent_, basis_dual_ + at, (end - begin) * cols);
       }
     });
+    synthesise(problem_.psi, basis_dual_, back, scratch_);
   }
 
   /// The last iteration: its p, left in gradient_, is the answer.
@@ -122,10 +118,7 @@ class Pdhg {
     const double moved = static_cast<double>(squared_distance(ahead_, gradient_, n_));  // 2 p - x from p
     info.primal_residual = size > 0.0 ? square_root(moved / size) : 0.0;
     // The picture is found; the duals are moved for those who ask for them.
-    if (problem_.warm_start || problem_.measure_gap || problem_.point.iterations == 1) {
-      dual_step_.apply(ahead_, row_dual_);
-      raise_basis_dual();
-    }
+    if (problem_.warm_start || problem_.measure_gap || problem_.point.iterations == 1) rise(ahead_);
     judge(info);
   }
 

@@ -225,8 +225,8 @@ COMPUEYE_MULTIVERSION void do_step(Step step, const RunningSums<double>& a, cons
   step_of(step, a, in, out, begin, end);
 }
 
-template <Step step, class T>
-void share_step(const RunningSums<T>& a, const T* in, T* out, std::size_t parts, const Crew& crew) noexcept {
+template <class T>
+void share_step(Step step, const RunningSums<T>& a, const T* in, T* out, std::size_t parts, const Crew& crew) noexcept {
   crew.share(parts, a.image_rows * a.image_cols,
              [&](std::size_t, std::size_t begin, std::size_t end) { do_step(step, a, in, out, begin, end); });
 }
@@ -234,7 +234,7 @@ void share_step(const RunningSums<T>& a, const T* in, T* out, std::size_t parts,
 template <class T>
 void forward_of(const RunningSums<T>& a, const T* x, T* y, T* scratch, const Crew& crew) noexcept {
   const std::size_t size = a.image_rows * a.image_cols;
-  share_step<Step::outward>(a, x, scratch, a.half_rows(), crew);
+  share_step(Step::outward, a, x, scratch, a.half_rows(), crew);
   const std::size_t apart = 4 * a.bands, taps = a.first[a.tables * apart];
   const bool in_order = a.rows_at_once > 1 && crew.shares(size);
   T* products = in_order ? scratch + a.scratch_size() : y;
@@ -247,10 +247,10 @@ void forward_of(const RunningSums<T>& a, const T* x, T* y, T* scratch, const Cre
 
 template <class T>
 void adjoint_of(const RunningSums<T>& a, const T* y, T* x, T* scratch, const Crew& crew) noexcept {
-  share_step<Step::scatter>(a, y, scratch, a.bands, crew);
+  share_step(Step::scatter, a, y, scratch, a.bands, crew);
   // Rows last: what follows goes by rows.
-  if (a.rows_at_once == 8) share_step<Step::inward_transposed>(a, scratch, x, a.half_rows(), crew);
-  share_step<Step::inward>(a, scratch, x, a.half_rows(), crew);
+  if (a.rows_at_once == 8) share_step(Step::inward_transposed, a, scratch, x, a.half_rows(), crew);
+  share_step(Step::inward, a, scratch, x, a.half_rows(), crew);
 }
 
 template <class T>

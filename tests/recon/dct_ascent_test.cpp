@@ -23,7 +23,7 @@ void check_ascent(int height, int width) {
   psi.rows = {rows, row_table.data()};
   psi.cols = {cols, col_table.data()};
   std::vector<T> scratch(core::dct_scratch_size(rows, cols)), coefficients(n), expected(n), picture(n);
-  std::vector<T> dual(n, T(0)), strips(core::dct_strips_size(rows, cols), T(0));
+  std::vector<T> dual(n, T(0)), strips(core::dct_strips_size(rows, cols), T(0)), in_place = strips;
   const core::Ascent<T> ascent{T(0.7), T(0.5), T(1.5)};
   Random random(31);
   for (int step = 0; step < 3; ++step) {  // the dual of one is where the next begins
@@ -34,16 +34,15 @@ void check_ascent(int height, int width) {
     core::dct_inverse(psi, dual.data(), expected.data(), scratch.data());
     core::dct_ascend(psi, ascent, x.data(), strips.data(), picture.data(), scratch.data());
     CHECK(picture == expected);
+    // In place, as the last iteration does it.
+    core::dct_ascend(psi, ascent, x.data(), in_place.data(), x.data(), scratch.data());
+    CHECK(x == expected);
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t c = 0; c < cols; ++c) {
         CHECK(strips[core::dct_strip_element(r, c, cols)] == dual[r * cols + c]);
       }
     }
   }
-  const std::vector<T> before = strips;
-  core::dct_inverse_of_strips(psi, strips.data(), picture.data(), scratch.data());
-  CHECK(picture == expected);
-  CHECK(strips == before);
 }
 
 }  // namespace
@@ -61,6 +60,6 @@ TEST_CASE("a dual that has moved far enough stays within its bound unless it is 
   CHECK(plain.moved(0.0F, -1.0F) == -0.5F);
   CHECK(plain.moved(0.25F, 0.01F) == doctest::Approx(0.35F));
   CHECK(relaxed.moved(0.0F, 1.0F) == 0.75F);
-  CHECK(std::isnan(plain.moved(0.0F, std::nanf(""))) == false);  // the clip takes NaN for its lower bound
+  CHECK_FALSE(std::isnan(plain.moved(0.0F, std::nanf(""))));  // a dual recovers; the frame is judged by its picture
   CHECK(plain.moved(1e-25F, 0.0F) == 0.0F);
 }
