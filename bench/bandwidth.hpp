@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bench/timing.hpp"
-#include "recon/core/vector_sums.hpp"
+#include "recon/core/parts/vector_sums.hpp"
 
 namespace compueye::bench {
 

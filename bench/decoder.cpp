@@ -22,7 +22,7 @@
 #include "drivers/protocol/packet_stream.hpp"
 #include "drivers/protocol/sample_format.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/table.hpp"
+#include "firmware/text/table.hpp"
 
 using namespace compueye;
 

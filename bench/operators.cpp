@@ -16,11 +16,11 @@
 #include "bench/timing.hpp"
 #include "calib/plausible_response.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/table.hpp"
-#include "recon/core/linear_operator.hpp"
-#include "recon/problem_tables.hpp"
-#include "recon/quantised_response.hpp"
-#include "recon/running_sum_tables.hpp"
+#include "firmware/text/table.hpp"
+#include "recon/core/operators/linear_operator.hpp"
+#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/quantised_response.hpp"
+#include "recon/setup/running_sum_tables.hpp"
 
 using namespace compueye;
 namespace core = recon::core;

@@ -11,7 +11,7 @@
 #include "bench/timing.hpp"
 #include "calib/nominal.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/table.hpp"
+#include "firmware/text/table.hpp"
 #include "recon/metrics.hpp"
 #include "recon/reconstructor.hpp"
 #include "sim/random.hpp"

@@ -12,7 +12,7 @@
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/table.hpp"
+#include "firmware/text/table.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/reconstructor.hpp"
 #include "sim/built_in_scenes.hpp"

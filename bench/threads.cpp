@@ -18,12 +18,12 @@
 #include "bench/timing.hpp"
 #include "calib/plausible_response.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/table.hpp"
-#include "recon/core/linear_operator.hpp"
+#include "firmware/text/table.hpp"
+#include "recon/core/operators/linear_operator.hpp"
 #include "recon/option_names.hpp"
-#include "recon/problem_tables.hpp"
-#include "recon/quantised_response.hpp"
 #include "recon/reconstructor.hpp"
+#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/quantised_response.hpp"
 #include "recon/worker_threads.hpp"
 
 using namespace compueye;

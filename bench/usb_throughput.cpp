@@ -25,7 +25,7 @@
 #include "drivers/protocol/packet_stream.hpp"
 #include "drivers/transport/usb_libusb.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/table.hpp"
+#include "firmware/text/table.hpp"
 #include "hal/clock.hpp"
 #include "tests/hil/emulated_usbfs.hpp"
 #include "tests/hil/umockdev_entries.hpp"

@@ -14,7 +14,7 @@
 #include "bench/timing.hpp"
 #include "calib/nominal.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/table.hpp"
+#include "firmware/text/table.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/reconstructor.hpp"
 #include "sim/built_in_scenes.hpp"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "recon/core/frozen_layout.hpp"
+#include "recon/core/parts/frozen_layout.hpp"
 
 namespace compueye::recon {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "recon/core/frozen_frame.hpp"
+#include "recon/core/parts/frozen_frame.hpp"
 
 namespace compueye::recon {
 

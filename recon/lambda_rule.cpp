@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "recon/atom_norms.hpp"
+#include "recon/setup/atom_norms.hpp"
 
 namespace compueye::recon {
 namespace {

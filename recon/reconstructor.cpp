@@ -9,19 +9,19 @@
 #include <variant>
 #include <vector>
 
-#include "recon/core/frame_solver.hpp"
-#include "recon/core/warm_start.hpp"
-#include "recon/core/workspace.hpp"
-#include "recon/deflation_rule.hpp"
-#include "recon/dual_step_tables.hpp"
-#include "recon/leading_modes.hpp"
-#include "recon/mirror_symmetry.hpp"
+#include "recon/core/parts/frame_solver.hpp"
+#include "recon/core/parts/warm_start.hpp"
+#include "recon/core/parts/workspace.hpp"
 #include "recon/number_text.hpp"
-#include "recon/parity_classes.hpp"
-#include "recon/penalty_rule.hpp"
-#include "recon/problem_checks.hpp"
-#include "recon/problem_tables.hpp"
-#include "recon/quantised_response.hpp"
+#include "recon/setup/deflation_rule.hpp"
+#include "recon/setup/dual_step_tables.hpp"
+#include "recon/setup/leading_modes.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
+#include "recon/setup/parity_classes.hpp"
+#include "recon/setup/penalty_rule.hpp"
+#include "recon/setup/problem_checks.hpp"
+#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/quantised_response.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::recon {

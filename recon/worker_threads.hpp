@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hal/result.hpp"
-#include "recon/core/crew.hpp"
+#include "recon/core/parts/crew.hpp"
 
 namespace compueye::recon {
 

@@ -17,7 +17,7 @@
 #include "calib/nominal.hpp"
 #include "calib/plausible_response.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/table.hpp"
+#include "firmware/text/table.hpp"
 #include "recon/option_names.hpp"
 
 using namespace compueye;

@@ -6,9 +6,9 @@
 #include "firmware/bare_metal/instruction_clock.hpp"
 #include "firmware/bare_metal/painted_stack.hpp"
 #include "firmware/bare_metal/semihosting.hpp"
-#include "recon/core/frame_solver.hpp"
-#include "recon/core/frozen_frame.hpp"
-#include "recon/core/workspace.hpp"
+#include "recon/core/parts/frame_solver.hpp"
+#include "recon/core/parts/frozen_frame.hpp"
+#include "recon/core/parts/workspace.hpp"
 
 using namespace compueye;
 using namespace compueye::recon::core;

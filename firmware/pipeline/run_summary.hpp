@@ -7,7 +7,7 @@
 #include "firmware/pipeline/time_histogram.hpp"
 #include "hal/accounting.hpp"
 #include "hal/result.hpp"
-#include "recon/core/frame_info.hpp"
+#include "recon/core/parts/frame_info.hpp"
 
 namespace compueye::firmware {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "firmware/app/board/board.hpp"
+#include "firmware/eye/board.hpp"
 #include "tests/firmware/app_board_text.hpp"
 
 using namespace compueye;

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "firmware/app/board/board.hpp"
+#include "firmware/eye/board.hpp"
 #include "tests/firmware/app_board_promises.hpp"
 #include "tests/firmware/app_board_text.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "firmware/app/board/board.hpp"
+#include "firmware/eye/board.hpp"
 
 namespace compueye::firmware::test {
 

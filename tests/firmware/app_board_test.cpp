@@ -1,4 +1,4 @@
-#include "firmware/app/board/board.hpp"
+#include "firmware/eye/board.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/stat.h>
@@ -10,9 +10,9 @@
 #include <sstream>
 #include <string>
 
-#include "firmware/app/board/board_schema.hpp"
-#include "firmware/app/board/reconstruction_names.hpp"
-#include "firmware/app/board/schema_check.hpp"
+#include "firmware/eye/settings/board_schema.hpp"
+#include "firmware/eye/settings/reconstruction_names.hpp"
+#include "firmware/eye/settings/schema_check.hpp"
 #include "tests/firmware/app_board_text.hpp"
 
 using namespace compueye;

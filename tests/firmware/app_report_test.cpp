@@ -10,10 +10,10 @@
 
 #include "firmware/app/report/error_report.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/nearest_name.hpp"
-#include "firmware/app/report/number_text.hpp"
-#include "firmware/app/report/table.hpp"
-#include "firmware/app/report/visible_text.hpp"
+#include "firmware/text/nearest_name.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/table.hpp"
+#include "firmware/text/visible_text.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;

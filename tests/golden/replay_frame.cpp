@@ -8,9 +8,9 @@
 #include <system_error>
 #include <vector>
 
-#include "recon/core/frame_solver.hpp"
-#include "recon/core/frozen_frame.hpp"
-#include "recon/core/workspace.hpp"
+#include "recon/core/parts/frame_solver.hpp"
+#include "recon/core/parts/frozen_frame.hpp"
+#include "recon/core/parts/workspace.hpp"
 
 using namespace compueye::recon;
 

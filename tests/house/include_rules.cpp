@@ -16,7 +16,7 @@ constexpr std::string_view not_on_the_frame_path =
     "any regex memory_resource new cstdlib stdlib.h thread mutex shared_mutex condition_variable future coroutine";
 
 // "Who may include whom": the house's table, a row a folder.
-constexpr std::array<FolderRule, 22> rules{{
+constexpr std::array<FolderRule, 26> rules{{
     {"hal", "hal", "tl-expected", false, none, false,
      "hal is contracts only: the standard library and tl::expected, no other folder, no OS header"},
 
@@ -54,7 +54,12 @@ constexpr std::array<FolderRule, 22> rules{{
      "firmware/files: hal, recon, libpng, xxhash and OS headers"},
     {"firmware/sinks", "hal firmware/files firmware/sinks", none, true, none, false,
      "firmware/sinks: hal, firmware/files and OS headers"},
+    {"firmware/text", "hal firmware/text", "fmt", false, none, false, "firmware/text: hal and fmt"},
+    {"firmware/eye", any, any, true, none, false, "firmware/eye: what a board makes of an eye"},
+    {"firmware/operating_points", any, any, true, none, false,
+     "firmware/operating_points: what a deadline chooses from"},
     {"firmware/app", any, any, true, none, false, "firmware/app wires everything"},
+    {"studies", any, any, true, none, false, "studies measure an eye instead of running it"},
 
     {"tests", any, any, true, none, false, "tests may include everything"},
     {"bench", any, any, true, none, false, "bench may include everything"},

@@ -26,7 +26,7 @@ struct Library {
 [[nodiscard]] std::span<const FolderRule> folder_rules() noexcept;
 [[nodiscard]] std::span<const Library> libraries() noexcept;
 
-/// The row for a file ("recon/core/dct.hpp"); nullptr when no row holds it.
+/// The row for a file ("recon/core/bases/dct.hpp"); nullptr when no row holds it.
 [[nodiscard]] const FolderRule* rule_for(std::string_view file) noexcept;
 /// nullptr when the header, or the CMake target, belongs to no known library.
 [[nodiscard]] const Library* library_of_header(std::string_view header) noexcept;

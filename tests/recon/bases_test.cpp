@@ -4,13 +4,13 @@
 #include <cmath>
 #include <utility>
 
-#include "recon/core/basis.hpp"
-#include "recon/core/metric.hpp"
-#include "recon/core/wavelet.hpp"
-#include "recon/dct_tables.hpp"
-#include "recon/fourier_tables.hpp"
+#include "recon/core/bases/basis.hpp"
+#include "recon/core/bases/wavelet.hpp"
+#include "recon/core/parts/metric.hpp"
 #include "recon/reference/reference_solver.hpp"
-#include "recon/smoothing.hpp"
+#include "recon/setup/dct_tables.hpp"
+#include "recon/setup/fourier_tables.hpp"
+#include "recon/setup/smoothing.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "recon/core/dct.hpp"
-#include "recon/dct_tables.hpp"
+#include "recon/core/bases/dct.hpp"
 #include "recon/reference/reference_solver.hpp"
+#include "recon/setup/dct_tables.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;

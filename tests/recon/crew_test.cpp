@@ -1,4 +1,4 @@
-#include "recon/core/crew.hpp"
+#include "recon/core/parts/crew.hpp"
 
 #include <doctest/doctest.h>
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "recon/core/dct.hpp"
-#include "recon/dct_tables.hpp"
+#include "recon/core/bases/dct.hpp"
+#include "recon/setup/dct_tables.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;

@@ -1,4 +1,4 @@
-#include "recon/core/dense_runs.hpp"
+#include "recon/core/operators/dense_runs.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,9 +9,9 @@
 #include <string>
 
 #include "calib/plausible_response.hpp"
-#include "recon/dense_run_tables.hpp"
-#include "recon/problem_tables.hpp"
-#include "recon/quantised_response.hpp"
+#include "recon/setup/dense_run_tables.hpp"
+#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/quantised_response.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;

@@ -1,15 +1,15 @@
-#include "recon/factor.hpp"
+#include "recon/setup/factor.hpp"
 
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
 #include <cmath>
 
-#include "recon/core/cholesky.hpp"
-#include "recon/core/packed_symmetric.hpp"
-#include "recon/mirror_symmetry.hpp"
-#include "recon/parity_classes.hpp"
-#include "recon/problem_tables.hpp"
+#include "recon/core/parts/cholesky.hpp"
+#include "recon/core/parts/packed_symmetric.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
+#include "recon/setup/parity_classes.hpp"
+#include "recon/setup/problem_tables.hpp"
 #include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/random_problem.hpp"
 

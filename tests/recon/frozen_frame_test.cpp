@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "calib/nominal.hpp"
-#include "recon/core/frame_solver.hpp"
-#include "recon/core/frozen_frame.hpp"
+#include "recon/core/parts/frame_solver.hpp"
+#include "recon/core/parts/frozen_frame.hpp"
 #include "recon/freeze.hpp"
 #include "tests/recon/every_setting.hpp"
 #include "tests/recon/solve_frame.hpp"

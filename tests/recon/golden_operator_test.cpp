@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "recon/mirror_symmetry.hpp"
-#include "recon/problem_tables.hpp"
-#include "recon/quantised_response.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
+#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/quantised_response.hpp"
 #include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;

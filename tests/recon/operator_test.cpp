@@ -1,11 +1,11 @@
-#include "recon/core/linear_operator.hpp"
+#include "recon/core/operators/linear_operator.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "recon/core/vector_sums.hpp"
+#include "recon/core/parts/vector_sums.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;

@@ -1,4 +1,4 @@
-#include "recon/core/proximal.hpp"
+#include "recon/core/parts/proximal.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "recon/core/running_sums.hpp"
+#include "recon/core/operators/running_sums.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,8 +9,8 @@
 
 #include "calib/nominal.hpp"
 #include "calib/plausible_response.hpp"
-#include "recon/problem_tables.hpp"
-#include "recon/running_sum_tables.hpp"
+#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/running_sum_tables.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
 

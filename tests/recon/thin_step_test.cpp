@@ -1,4 +1,4 @@
-#include "recon/core/thin_step.hpp"
+#include "recon/core/parts/thin_step.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,8 +12,8 @@
 
 #include "bench/eyes.hpp"
 #include "calib/nominal.hpp"
-#include "recon/mirror_symmetry.hpp"
-#include "recon/thin_step_tables.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
+#include "recon/setup/thin_step_tables.hpp"
 #include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/random_problem.hpp"
 

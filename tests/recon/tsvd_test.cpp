@@ -3,7 +3,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-#include "recon/singular_modes.hpp"
+#include "recon/setup/singular_modes.hpp"
 #include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"

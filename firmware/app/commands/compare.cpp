@@ -1,10 +1,10 @@
-#include "firmware/app/compare/compare.hpp"
+#include "studies/comparison/compare.hpp"
 
 #include <memory>
 
 #include "firmware/app/command.hpp"
-#include "firmware/app/eye/scene_choice.hpp"
 #include "firmware/app/options/json_failure.hpp"
+#include "firmware/eye/scene_choice.hpp"
 
 namespace compueye::firmware {
 namespace {

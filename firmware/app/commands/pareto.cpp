@@ -1,4 +1,4 @@
-#include "firmware/app/pareto/pareto.hpp"
+#include "studies/accuracy_and_time/pareto.hpp"
 
 #include <memory>
 

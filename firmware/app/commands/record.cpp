@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "firmware/app/command.hpp"
-#include "firmware/app/eye/scene_choice.hpp"
 #include "firmware/app/options/json_failure.hpp"
+#include "firmware/eye/scene_choice.hpp"
 
 namespace compueye::firmware {
 

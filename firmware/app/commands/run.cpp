@@ -3,10 +3,10 @@
 #include <string>
 
 #include "firmware/app/command.hpp"
-#include "firmware/app/eye/scene_choice.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/app/run/run_options.hpp"
 #include "firmware/app/run/run_session.hpp"
+#include "firmware/eye/scene_choice.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "firmware/app/command.hpp"
-#include "firmware/app/eye/scene_choice.hpp"
+#include "firmware/eye/scene_choice.hpp"
 
 namespace compueye::firmware {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <system_error>
 
-#include "firmware/app/report/number_text.hpp"
-#include "firmware/app/report/table.hpp"
-#include "firmware/app/report/visible_text.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/table.hpp"
+#include "firmware/text/visible_text.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "firmware/app/report/number_text.hpp"
 #include "firmware/files/npy_header.hpp"
+#include "firmware/text/number_text.hpp"
 
 namespace compueye::firmware {
 

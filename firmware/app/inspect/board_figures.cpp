@@ -13,14 +13,14 @@
 #include <vector>
 
 #include "calib/nominal.hpp"
-#include "firmware/app/board/dead_ommatidia.hpp"
-#include "firmware/app/board/reconstruction_names.hpp"
 #include "firmware/app/inspect/operator_lines.hpp"
-#include "firmware/app/report/number_text.hpp"
+#include "firmware/eye/dead_ommatidia.hpp"
+#include "firmware/eye/settings/reconstruction_names.hpp"
 #include "firmware/files/factor_cache.hpp"
+#include "firmware/text/number_text.hpp"
 #include "recon/lambda_rule.hpp"
-#include "recon/penalty_rule.hpp"
-#include "recon/quantised_response.hpp"
+#include "recon/setup/penalty_rule.hpp"
+#include "recon/setup/quantised_response.hpp"
 
 namespace compueye::firmware {
 namespace {

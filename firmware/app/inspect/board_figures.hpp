@@ -1,9 +1,9 @@
 #pragma once
 
-#include "firmware/app/board/board.hpp"
 #include "firmware/app/inspect/figure_list.hpp"
+#include "firmware/eye/board.hpp"
 #include "hal/result.hpp"
-#include "recon/factor.hpp"
+#include "recon/setup/factor.hpp"
 
 namespace compueye::firmware {
 

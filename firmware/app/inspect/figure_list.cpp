@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "firmware/app/report/table.hpp"
+#include "firmware/text/table.hpp"
 
 namespace compueye::firmware {
 

@@ -6,7 +6,6 @@
 #include <system_error>
 #include <utility>
 
-#include "firmware/app/board/board.hpp"
 #include "firmware/app/inspect/array_figures.hpp"
 #include "firmware/app/inspect/board_figures.hpp"
 #include "firmware/app/inspect/figure_list.hpp"
@@ -14,6 +13,7 @@
 #include "firmware/app/interrupt/interrupt_watch.hpp"
 #include "firmware/app/options/value_text.hpp"
 #include "firmware/app/report/progress_reporter.hpp"
+#include "firmware/eye/board.hpp"
 #include "firmware/files/matrix_market.hpp"
 #include "firmware/files/npy.hpp"
 #include "hal/clock.hpp"

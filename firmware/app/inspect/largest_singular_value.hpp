@@ -1,7 +1,7 @@
 #pragma once
 
-#include "recon/factor.hpp"
 #include "recon/response.hpp"
+#include "recon/setup/factor.hpp"
 
 namespace compueye::firmware {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
-#include "firmware/app/report/number_text.hpp"
-#include "recon/operator_figures.hpp"
+#include "firmware/text/number_text.hpp"
 #include "recon/option_names.hpp"
+#include "recon/setup/operator_figures.hpp"
 
 namespace compueye::firmware {
 

@@ -4,7 +4,7 @@
 
 #include "firmware/app/inspect/figure_list.hpp"
 #include "hal/result.hpp"
-#include "recon/core/frame_info.hpp"
+#include "recon/core/parts/frame_info.hpp"
 #include "recon/response.hpp"
 
 namespace compueye::firmware {

@@ -11,13 +11,13 @@
 #include "firmware/app/inspect/duplicate_rows.hpp"
 #include "firmware/app/inspect/largest_singular_value.hpp"
 #include "firmware/app/inspect/operator_lines.hpp"
-#include "firmware/app/report/number_text.hpp"
+#include "firmware/text/number_text.hpp"
 #include "recon/lambda_rule.hpp"
-#include "recon/mirror_symmetry.hpp"
 #include "recon/option_names.hpp"
-#include "recon/parity_classes.hpp"
-#include "recon/penalty_rule.hpp"
 #include "recon/reconstructor.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
+#include "recon/setup/parity_classes.hpp"
+#include "recon/setup/penalty_rule.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -5,8 +5,8 @@
 #include "firmware/app/inspect/figure_list.hpp"
 #include "firmware/app/options/value_text.hpp"
 #include "hal/result.hpp"
-#include "recon/factor.hpp"
 #include "recon/response.hpp"
+#include "recon/setup/factor.hpp"
 
 namespace compueye::firmware {
 

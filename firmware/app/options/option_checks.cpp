@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "firmware/app/options/value_text.hpp"
-#include "firmware/app/report/nearest_name.hpp"
-#include "firmware/app/report/visible_text.hpp"
+#include "firmware/text/nearest_name.hpp"
+#include "firmware/text/visible_text.hpp"
 
 namespace compueye::firmware {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware/app/report/nearest_name.hpp"
-#include "firmware/app/report/visible_text.hpp"
+#include "firmware/text/nearest_name.hpp"
+#include "firmware/text/visible_text.hpp"
 
 namespace compueye::firmware {
 namespace {

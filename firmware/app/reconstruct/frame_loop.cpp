@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "recon/core/workspace.hpp"
+#include "recon/core/parts/workspace.hpp"
 
 namespace compueye::firmware {
 namespace {

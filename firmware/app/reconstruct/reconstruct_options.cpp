@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/app/board/reconstruction_names.hpp"
 #include "firmware/app/options/option_checks.hpp"
 #include "firmware/app/reconstruct/solver_options.hpp"
+#include "firmware/eye/settings/reconstruction_names.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
-#include "firmware/app/board/reconstruction_names.hpp"
-#include "firmware/app/report/number_text.hpp"
-#include "firmware/app/report/table.hpp"
+#include "firmware/eye/settings/reconstruction_names.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/table.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -7,15 +7,15 @@
 #include <utility>
 
 #include "drivers/recording/recording_source.hpp"
-#include "firmware/app/board/board.hpp"
-#include "firmware/app/eye/board_source.hpp"
-#include "firmware/app/eye/scene_choice.hpp"
 #include "firmware/app/recording/recorded_with.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/number_text.hpp"
 #include "firmware/app/report/progress_reporter.hpp"
-#include "firmware/app/report/visible_text.hpp"
 #include "firmware/app/run/stop_signals.hpp"
+#include "firmware/eye/board.hpp"
+#include "firmware/eye/board_source.hpp"
+#include "firmware/eye/scene_choice.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/visible_text.hpp"
 
 namespace compueye::firmware {
 namespace {

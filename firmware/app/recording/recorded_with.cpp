@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "drivers/recording/recording_file.hpp"
-#include "firmware/app/report/visible_text.hpp"
+#include "firmware/text/visible_text.hpp"
 
 namespace compueye::firmware {
 

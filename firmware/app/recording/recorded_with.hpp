@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "firmware/app/board/board.hpp"
+#include "firmware/eye/board.hpp"
 #include "hal/clock.hpp"
 #include "hal/result.hpp"
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <string_view>
 
-#include "firmware/app/report/number_text.hpp"
-#include "firmware/app/report/visible_text.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/visible_text.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -1,6 +1,6 @@
 #include "firmware/app/report/error_report.hpp"
 
-#include "firmware/app/report/visible_text.hpp"
+#include "firmware/text/visible_text.hpp"
 
 namespace compueye::firmware {
 

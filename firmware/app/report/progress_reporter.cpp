@@ -11,8 +11,8 @@
 #include <limits>
 #include <utility>
 
-#include "firmware/app/report/number_text.hpp"
-#include "firmware/app/report/visible_text.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/visible_text.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -11,14 +11,14 @@
 #include "calib/nominal.hpp"
 #include "calib/plausible_response.hpp"
 #include "calib/response_summary.hpp"
-#include "firmware/app/board/board.hpp"
 #include "firmware/app/interrupt/interrupt_watch.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/number_text.hpp"
 #include "firmware/app/report/progress_reporter.hpp"
-#include "firmware/app/report/table.hpp"
+#include "firmware/eye/board.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/response_file.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/table.hpp"
 #include "hal/clock.hpp"
 
 namespace compueye::firmware {

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "firmware/app/eye/kept_factor.hpp"
-#include "firmware/app/eye/picture_quality.hpp"
-#include "firmware/app/eye/ready_eye.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/run/deadline_choice.hpp"
 #include "firmware/app/run/ladder_report.hpp"
+#include "firmware/eye/kept_factor.hpp"
+#include "firmware/eye/picture_quality.hpp"
+#include "firmware/eye/ready_eye.hpp"
+#include "firmware/operating_points/deadline_choice.hpp"
 #include "firmware/pipeline/run_summary.hpp"
 
 namespace compueye::firmware {

@@ -4,11 +4,11 @@
 #include <string>
 #include <string_view>
 
-#include "firmware/app/board/reconstruction_names.hpp"
-#include "firmware/app/report/number_text.hpp"
-#include "firmware/app/report/table.hpp"
-#include "firmware/app/report/visible_text.hpp"
 #include "firmware/app/run/run_report.hpp"
+#include "firmware/eye/settings/reconstruction_names.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/table.hpp"
+#include "firmware/text/visible_text.hpp"
 
 namespace compueye::firmware {
 namespace {

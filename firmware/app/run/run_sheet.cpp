@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/app/board/reconstruction_names.hpp"
-#include "firmware/app/report/number_text.hpp"
+#include "firmware/eye/settings/reconstruction_names.hpp"
 #include "firmware/sinks/contact_sheet.hpp"
+#include "firmware/text/number_text.hpp"
 
 namespace compueye::firmware {
 namespace {

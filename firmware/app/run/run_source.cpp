@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "firmware/app/eye/board_source.hpp"
 #include "firmware/app/recording/recorded_with.hpp"
+#include "firmware/eye/board_source.hpp"
 
 namespace compueye::firmware {
 using hal::Result;

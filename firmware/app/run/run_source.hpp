@@ -7,8 +7,8 @@
 
 #include "drivers/recording/recording_source.hpp"
 #include "drivers/recording/replay_source.hpp"
-#include "firmware/app/board/board.hpp"
 #include "firmware/app/run/run_options.hpp"
+#include "firmware/eye/board.hpp"
 #include "hal/clock.hpp"
 #include "hal/sample_source.hpp"
 #include "sim/scene.hpp"

@@ -9,13 +9,13 @@
 #include <memory>
 #include <vector>
 
-#include "firmware/app/board/board.hpp"
-#include "firmware/app/eye/scene_choice.hpp"
-#include "firmware/app/eye/simulated_board.hpp"
 #include "firmware/app/report/json_report.hpp"
-#include "firmware/app/report/number_text.hpp"
-#include "firmware/app/report/table.hpp"
+#include "firmware/eye/board.hpp"
+#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/npy.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/table.hpp"
 #include "sim/scene_truth.hpp"
 #include "sim/simulated_eye.hpp"
 

@@ -1,4 +1,4 @@
-#include "firmware/app/run/deadline_choice.hpp"
+#include "firmware/operating_points/deadline_choice.hpp"
 
 #include <doctest/doctest.h>
 

@@ -2,10 +2,10 @@
 
 #include <atomic>
 
-#include "firmware/app/eye/ready_eye.hpp"
-#include "firmware/app/eye/scene_choice.hpp"
-#include "firmware/app/eye/simulated_board.hpp"
 #include "firmware/app/run/frame_keeper.hpp"
+#include "firmware/eye/ready_eye.hpp"
+#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/simulated_board.hpp"
 #include "firmware/pipeline/pipeline.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "firmware/sinks/null_sink.hpp"

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "firmware/app/board/board.hpp"
-#include "firmware/app/eye/ready_eye.hpp"
+#include "firmware/eye/board.hpp"
+#include "firmware/eye/ready_eye.hpp"
 #include "firmware/files/npy.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "recon/metrics.hpp"

@@ -1,4 +1,4 @@
-#include "firmware/app/pareto/efficient_front.hpp"
+#include "studies/accuracy_and_time/efficient_front.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,9 +1,9 @@
-#include "firmware/app/pareto/gnuplot_script.hpp"
+#include "studies/accuracy_and_time/gnuplot_script.hpp"
 
 #include <doctest/doctest.h>
 
-#include "firmware/app/pareto/plot_curves.hpp"
-#include "firmware/app/pareto/sweep_text.hpp"
+#include "studies/accuracy_and_time/plot_curves.hpp"
+#include "studies/accuracy_and_time/sweep_text.hpp"
 #include "tests/firmware/pareto/some_sweep.hpp"
 
 using namespace compueye;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "firmware/app/run/deadline_watch.hpp"
-#include "firmware/app/run/point_ladder.hpp"
+#include "firmware/operating_points/deadline_watch.hpp"
+#include "firmware/operating_points/point_ladder.hpp"
 #include "tests/firmware/pareto/some_sweep.hpp"
 #include "tests/memory/allocation_counter.hpp"
 

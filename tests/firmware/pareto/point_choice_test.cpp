@@ -1,8 +1,8 @@
-#include "firmware/app/run/point_choice.hpp"
+#include "firmware/operating_points/point_choice.hpp"
 
 #include <doctest/doctest.h>
 
-#include "firmware/app/run/deadline_choice.hpp"
+#include "firmware/operating_points/deadline_choice.hpp"
 #include "tests/firmware/pareto/some_sweep.hpp"
 
 using namespace compueye;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "firmware/app/pareto/sweep.hpp"
+#include "studies/accuracy_and_time/sweep.hpp"
 
 namespace compueye::test {
 

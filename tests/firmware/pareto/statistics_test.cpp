@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "firmware/app/pareto/frame_times.hpp"
-#include "firmware/app/pareto/quality_summary.hpp"
+#include "studies/accuracy_and_time/frame_times.hpp"
+#include "studies/accuracy_and_time/quality_summary.hpp"
 
 using namespace compueye::firmware;
 

@@ -1,4 +1,4 @@
-#include "firmware/app/run/step_rule.hpp"
+#include "firmware/operating_points/step_rule.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "firmware/app/pareto/stored_points.hpp"
+#include "firmware/operating_points/stored_points.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "firmware/app/pareto/sweep_json.hpp"
+#include "firmware/operating_points/sweep_json.hpp"
 #include "tests/firmware/pareto/some_sweep.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 

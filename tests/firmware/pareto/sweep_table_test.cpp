@@ -1,13 +1,13 @@
-#include "firmware/app/pareto/sweep_table.hpp"
+#include "studies/accuracy_and_time/sweep_table.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 
-#include "firmware/app/pareto/curve_eyes.hpp"
-#include "firmware/app/pareto/machine.hpp"
+#include "firmware/operating_points/machine.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
+#include "studies/accuracy_and_time/curve_eyes.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;

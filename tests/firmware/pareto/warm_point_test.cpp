@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "firmware/app/pareto/point_meter.hpp"
+#include "studies/accuracy_and_time/point_meter.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "calib/nominal.hpp"
-#include "recon/dual_step_tables.hpp"
-#include "recon/leading_modes.hpp"
-#include "recon/mirror_symmetry.hpp"
+#include "recon/setup/dual_step_tables.hpp"
+#include "recon/setup/leading_modes.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
 

@@ -1,4 +1,4 @@
-#include "recon/penalty_rule.hpp"
+#include "recon/setup/penalty_rule.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "recon/penalty_schedule.hpp"
+#include "recon/setup/penalty_schedule.hpp"
 
 #include <doctest/doctest.h>
 

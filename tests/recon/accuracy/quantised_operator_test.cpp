@@ -4,8 +4,8 @@
 #include <string>
 
 #include "recon/option_names.hpp"
-#include "recon/quantised_response.hpp"
 #include "recon/reference/reference_solver.hpp"
+#include "recon/setup/quantised_response.hpp"
 #include "recon/solver_table.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"

@@ -1,4 +1,4 @@
-#include "recon/step_sizes.hpp"
+#include "recon/setup/step_sizes.hpp"
 
 #include <doctest/doctest.h>
 

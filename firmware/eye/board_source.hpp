@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "firmware/eye/board.hpp"
+#include "hal/clock.hpp"
+#include "hal/sample_source.hpp"
+#include "sim/scene.hpp"
+
+namespace compueye::firmware {
+
+/// What a command asks of a board's eye.
+struct EyeWanted {
+  sim::Scene scene;        ///< in front of a simulated eye
+  std::uint64_t seed = 0;  ///< of a simulated eye's noise
+  bool lossless = false;   ///< a simulated eye waits for its reader instead of keeping the board's rate
+  std::optional<std::uint64_t> frame_limit;  ///< frames that a simulated eye makes at most
+};
+
+/// The eye of a board: simulated, or on a cable and identified: the board's serial, or the first one there is where the
+/// board names none. `clock` must outlive it. Errors: those of SimulatedEye::create() and DeviceSource::create();
+/// mismatch (an eye of another number of channels or depth than the board says), usage (--lossless on a cable).
+[[nodiscard]] hal::Result<std::unique_ptr<hal::SampleSource>> board_source(const Board& board, EyeWanted wanted,
+                                                                           hal::Clock& clock);
+
+/// Whether a source is of as many channels and as deep as the board's eye. Error mismatch at `place`.
+[[nodiscard]] hal::Result<void> check_fits(const hal::SourceDescription& source, const Board& board,
+                                           const std::string& place);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,70 @@
+#include "firmware/eye/conventional_eye.hpp"
+
+#include <vector>
+
+#include "calib/nominal.hpp"
+#include "firmware/eye/simulated_board.hpp"
+#include "firmware/pipeline/correction.hpp"
+#include "hal/clock.hpp"
+#include "recon/conventional_image.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+/// Rows below the least sum become empty, so that their pixels go to a neighbour.
+hal::Result<recon::Response> without_weak_rows(const recon::Response& response) {
+  const std::vector<double> sums = response.row_sums();
+  std::vector<std::int64_t> row_start{0};
+  std::vector<std::int32_t> columns;
+  std::vector<double> values;
+  for (int m = 0; m < response.rows(); ++m) {
+    if (sums[static_cast<std::size_t>(m)] >= least_conventional_row_sum) {
+      response.for_each_in_row(m, [&](std::int32_t n, double value) {
+        columns.push_back(n);
+        values.push_back(value);
+      });
+    }
+    row_start.push_back(static_cast<std::int64_t>(values.size()));
+  }
+  return recon::Response::from_csr(response.rows(), response.cols(), std::move(row_start), std::move(columns),
+                                   std::move(values));
+}
+
+hal::Result<std::vector<float>> one_frame(const Board& narrow, const sim::Scene& scene, std::uint64_t seed) {
+  hal::VirtualClock clock;
+  auto eye = sim::SimulatedEye::create(simulated_eye_settings(narrow, scene, seed), clock);
+  if (!eye) return tl::unexpected(eye.error());
+  auto correction = Correction::create(correction_settings(narrow), (*eye)->describe());
+  if (!correction) return tl::unexpected(correction.error());
+  if (auto started = (*eye)->start(); !started) return tl::unexpected(started.error());
+  const auto block = (*eye)->read(0);
+  if (!block) return tl::unexpected(block.error());
+  const auto channels = static_cast<std::size_t>(narrow.eye.ommatidia());
+  std::vector<float> y(channels), weights(channels);
+  // Whether the frame is usable does not matter here: saturation is out of reach for so narrow an eye.
+  correction->apply(*block, y, weights);
+  return y;
+}
+
+}  // namespace
+
+hal::Result<hal::Image> conventional_picture(const Board& board, const sim::Scene& scene, std::uint64_t seed) {
+  const auto narrow = conventional_board(board);
+  if (!narrow) {
+    return hal::fail(hal::ErrorCode::unsupported, board.name,
+                     "has a lattice without an interommatidial angle, so there is no conventional eye to compare with");
+  }
+  const auto nominal = calib::nominal_response(narrow->eye, narrow->object);
+  if (!nominal) return tl::unexpected(nominal.error());
+  const auto response = without_weak_rows(*nominal);
+  if (!response) return tl::unexpected(response.error());
+  const auto image = recon::ConventionalImage::create(*response, narrow->object.rows, narrow->object.cols);
+  if (!image) return tl::unexpected(image.error());
+  const auto y = one_frame(*narrow, scene, seed);
+  if (!y) return tl::unexpected(y.error());
+  hal::Image picture(narrow->object.rows, narrow->object.cols);
+  image->render(*y, picture.pixels);
+  return picture;
+}
+
+}  // namespace compueye::firmware

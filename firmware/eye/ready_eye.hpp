@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/eye/board.hpp"
+#include "firmware/eye/kept_factor.hpp"
+#include "firmware/eye/living_response.hpp"
+#include "hal/result.hpp"
+#include "recon/reconstructor.hpp"
+
+namespace compueye::firmware {
+
+/// What a command line says otherwise than the board.
+struct EyeRequest {
+  std::optional<int> iterations;
+  std::optional<double> lambda;  ///< by hand
+  std::optional<double> sigma;   ///< of one sample, for the rule; wins over a lambda that the board states
+  std::optional<int> threads;
+  std::filesystem::path cache;  ///< where what takes long is kept; empty: nowhere
+  recon::Precision precision = recon::Precision::f32;
+};
+
+/// Where lambda came from.
+struct LambdaChoice {
+  double value = 0.0;
+  bool by_rule = false;
+  double sigma = 0.0;  ///< the rule's noise; meaningful when by_rule
+};
+
+/// A board made ready to reconstruct: the nominal response of its geometry with the rows of dead ommatidia zero,
+/// lambda, the factor (kept or made) and the reconstructor.
+class ReadyEye {
+ public:
+  /// Takes from milliseconds to minutes; `progress` is asked throughout. Errors: those of nominal_response(),
+  /// lambda_by_rule() and Reconstructor::create(); interrupted.
+  [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const EyeRequest& request,
+                                                  const recon::Progress& progress);
+  /// The same on a response that is there already, which only this call looks at.
+  [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const LivingResponse& living,
+                                                  const EyeRequest& request, const recon::Progress& progress);
+
+  [[nodiscard]] const recon::Reconstructor& reconstructor() const noexcept { return *reconstructor_; }
+  /// Gives the reconstructor away, and with it the right to ask for it.
+  [[nodiscard]] recon::Reconstructor take_reconstructor() && { return std::move(*reconstructor_); }
+  /// By ommatidium, 0 = sees nothing of the object plane by its geometry; a dead one may well see.
+  [[nodiscard]] const std::vector<std::uint8_t>& sees() const noexcept { return sees_; }
+  [[nodiscard]] const LambdaChoice& lambda() const noexcept { return lambda_; }
+  [[nodiscard]] FactorOrigin factor_origin() const noexcept { return factor_origin_; }
+  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+
+  /// Gives back memory that frames do not need, see Reconstructor::forget_modes().
+  void forget_modes() noexcept { reconstructor_->forget_modes(); }
+  /// Another number of iterations a frame.
+  [[nodiscard]] hal::Result<void> set_iterations(int iterations) { return reconstructor_->set_iterations(iterations); }
+
+ private:
+  ReadyEye() = default;
+
+  std::unique_ptr<recon::Reconstructor> reconstructor_;
+  std::vector<std::uint8_t> sees_;
+  LambdaChoice lambda_;
+  FactorOrigin factor_origin_ = FactorOrigin::made;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace compueye::firmware

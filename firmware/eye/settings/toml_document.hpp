@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/eye/settings/toml_value.hpp"
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+struct TomlSection {
+  std::string name;
+  int line = 0;
+};
+
+/// `section` is empty for a key above the first [section].
+struct TomlEntry {
+  std::string section;
+  std::string key;
+  TomlValue value;
+  int line = 0;
+};
+
+/// A TOML file of one level of sections, flat and in the order of its lines.
+struct TomlDocument {
+  std::vector<TomlSection> sections;
+  std::vector<TomlEntry> entries;
+};
+
+/// Errors: bad_format with "file:line" as place; the sentence names the column and what the parser met.
+[[nodiscard]] hal::Result<TomlDocument> parse_toml(std::string_view text, const std::string& file);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,113 @@
+#include "firmware/operating_points/point_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "firmware/operating_points/deadline_choice.hpp"
+#include "firmware/text/number_text.hpp"
+#include "studies/accuracy_and_time/efficient_front.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+std::size_t nearest_level(const Sweep& sweep, double sigma) {
+  const auto distance = [&](const NoiseLevel& level) { return std::abs(std::log(level.sigma / sigma)); };
+  const auto nearest =
+      std::min_element(sweep.levels.begin(), sweep.levels.end(),
+                       [&](const NoiseLevel& a, const NoiseLevel& b) { return distance(a) < distance(b); });
+  return static_cast<std::size_t>(nearest - sweep.levels.begin());
+}
+
+std::uint64_t memory_of(const Sweep& sweep, const std::vector<std::size_t>& ladder) {
+  std::vector<std::pair<Curve, std::uint64_t>> curves;
+  for (const std::size_t i : ladder) {
+    const MeasuredPoint& point = sweep.points[i];
+    const std::uint64_t bytes = point.table_bytes + point.workspace_bytes;
+    const auto same =
+        std::find_if(curves.begin(), curves.end(), [&](const auto& one) { return one.first == point.curve; });
+    if (same == curves.end()) {
+      curves.emplace_back(point.curve, bytes);
+    } else {
+      same->second = std::max(same->second, bytes);
+    }
+  }
+  std::uint64_t total = 0;
+  for (const auto& [curve, bytes] : curves) total += bytes;
+  return total;
+}
+
+/// A frame does not say how many threads it took or how it started.
+bool frames_look_alike(const MeasuredPoint& a, const MeasuredPoint& b) {
+  return a.curve.solver == b.curve.solver && a.curve.basis == b.curve.basis && a.curve.precision == b.curve.precision &&
+         a.op == b.op && a.iterations == b.iterations;
+}
+
+}  // namespace
+
+PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, double period_ms) {
+  constexpr double least_gain = 0.01;
+  PointChoice choice;
+  choice.deadline_ms = deadline_ms;
+  choice.level = nearest_level(sweep, sigma);
+  std::vector<CostAndError> points;
+  for (const MeasuredPoint& point : sweep.points) {
+    // What a still scene makes of a warm start is more than a run can count on.
+    const bool counts = point.curve.motion != Motion::still;
+    const double nmse = point.levels[choice.level].quality.mean.nmse;
+    points.push_back({point.p999_ms, counts ? nmse : std::numeric_limits<double>::quiet_NaN()});
+  }
+  std::vector<std::size_t> front = efficient_front(points, least_gain);
+  if (front.empty()) front.push_back(0);  // nothing but still scenes was measured
+  std::size_t chosen = 0;
+  for (std::size_t f = 0; f < front.size(); ++f) {
+    if (predicted_age_ms(points[front[f]].cost, period_ms) > deadline_share * deadline_ms) continue;
+    chosen = f;
+    choice.fits = true;
+  }
+  choice.ladder.push_back(front[chosen]);
+  choice.age_ms = predicted_age_ms(points[front[chosen]].cost, period_ms);
+  const std::uint64_t alone = memory_of(sweep, choice.ladder);
+  for (std::size_t f = chosen; f-- > 0 && choice.ladder.size() < most_rungs;) {
+    if (points[front[f]].cost * rung_speed_up > points[choice.ladder.back()].cost) continue;
+    const bool told_apart = std::none_of(choice.ladder.begin(), choice.ladder.end(), [&](std::size_t other) {
+      return frames_look_alike(sweep.points[front[f]], sweep.points[other]);
+    });
+    if (!told_apart) continue;
+    std::vector<std::size_t> longer = choice.ladder;
+    longer.push_back(front[f]);
+    if (memory_of(sweep, longer) <= alone + most_ladder_bytes) choice.ladder = std::move(longer);
+  }
+  choice.memory_bytes = memory_of(sweep, choice.ladder);
+  return choice;
+}
+
+std::string point_text(const MeasuredPoint& point) {
+  return fmt::format("{}, {} iteration{}", title(point.curve), point.iterations, point.iterations == 1 ? "" : "s");
+}
+
+std::string sentence(const PointChoice& choice, const Sweep& sweep) {
+  const auto ms = [](double value) { return significant(value, 3) + " ms"; };
+  const MeasuredPoint& chosen = sweep.points[choice.ladder.front()];
+  const std::string figures = fmt::format(
+      "{}: NMSE {} on the evaluation scenes at sigma {}, 99.9 % of frames solved within {}, pictures then {} old",
+      point_text(chosen), significant(chosen.levels[choice.level].quality.mean.nmse, 3),
+      significant(sweep.levels[choice.level].sigma, 3), ms(chosen.p999_ms), ms(choice.age_ms));
+  if (!choice.fits) {
+    return fmt::format("the deadline of {} cannot be kept by any of the {} stored points; running with the fastest, {}",
+                       ms(choice.deadline_ms), sweep.points.size(), figures);
+  }
+  std::string text = fmt::format(
+      "the deadline of {} is met by {}; no more accurate one of the {} stored points leaves a fifth of it as head-room",
+      ms(choice.deadline_ms), figures, sweep.points.size());
+  if (choice.ladder.size() == 1) return text + "; there is no faster one to step down to";
+  text += "; steps down to";
+  for (std::size_t r = 1; r < choice.ladder.size(); ++r) {
+    text += fmt::format("{} {}", r > 1 ? "," : "", point_text(sweep.points[choice.ladder[r]]));
+  }
+  return text + fmt::format("; {} of memory for all of them", bytes(choice.memory_bytes));
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "studies/accuracy_and_time/sweep.hpp"
+
+namespace compueye::firmware {
+
+/// Which stored points a deadline asks for.
+struct PointChoice {
+  double deadline_ms = 0.0;
+  double age_ms = 0.0;              ///< predicted for the chosen point: exposure, waiting, 99.9th percentile of solving
+  bool fits = false;                ///< false: not even the fastest point leaves the head-room
+  std::size_t level = 0;            ///< of the sweep: that whose sigma is nearest
+  std::vector<std::size_t> ladder;  ///< indices of points: the chosen one, then faster and faster ones to step down to
+  std::uint64_t memory_bytes = 0;   ///< tables and workspaces of the ladder; points of one curve share theirs
+};
+
+inline constexpr std::size_t most_rungs = 4;
+inline constexpr double rung_speed_up = 1.5;  ///< each rung's 99.9th percentile is at least so many times shorter
+inline constexpr std::uint64_t most_ladder_bytes = std::uint64_t{512} << 20U;  ///< beyond the chosen point
+
+/// The most accurate stored point (mean NMSE at the noise level nearest to `sigma`) whose 99.9th percentile of frame
+/// time keeps the predicted age within deadline_share of the deadline, and what to step down to. The age is that of
+/// choose_iterations(). A warm start counts with what it made of a scene in which something moves. When nothing fits,
+/// the fastest point alone. `sweep` has points.
+[[nodiscard]] PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, double period_ms);
+
+/// Says which point was chosen and why.
+[[nodiscard]] std::string sentence(const PointChoice& choice, const Sweep& sweep);
+
+/// "admm dct, 30 iterations"
+[[nodiscard]] std::string point_text(const MeasuredPoint& point);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+
+#include "recon/core/parts/frame_info.hpp"
+#include "recon/core/parts/frame_problem.hpp"
+
+namespace compueye::recon::core {
+
+/// Orthogonal matching pursuit (Pati, Rezaiifar & Krishnaprasad 1993): the l0 way of looking for a sparse x, to be
+/// compared with. Takes the element of the basis whose atom A psi_j points most along the residual, fits all taken ones
+/// by weighted least squares, and goes on until no atom's correlation with the residual exceeds lambda (the bound that
+/// holds at the l1 optimum; Cai & Wang 2011, section III), until the residual is at most problem.epsilon, or until
+/// problem.point.iterations or a.rows elements are taken. Identity or an orthonormal basis, no constraint.
+///
+/// The objective is 1/2 ||W^(1/2)(A x - y)||^2 alone, iterations is the number of elements; converged when it stopped
+/// by lambda or epsilon. An element that depends on those taken, to a millionth of its norm, is passed over.
+template <class T>
+FrameInfo solve_omp(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
+                    float* x) noexcept;
+
+/// Bytes of workspace that solve_omp() uses, exactly.
+template <class T>
+[[nodiscard]] std::size_t omp_bytes(const FrameProblem<T>& problem) noexcept;
+
+}  // namespace compueye::recon::core

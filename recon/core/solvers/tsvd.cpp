@@ -1,0 +1,114 @@
+#include "recon/core/solvers/tsvd.hpp"
+
+#include "recon/core/parts/cholesky.hpp"
+#include "recon/core/parts/frame_outcome.hpp"
+#include "recon/core/parts/proximal.hpp"
+#include "recon/core/parts/vector_sums.hpp"
+
+namespace compueye::recon::core {
+namespace {
+
+/// Keeps D^-1 - P positive definite where the missing channels alone see a singular vector.
+constexpr double open_direction = 1e-5;
+
+template <class T>
+class Tsvd {
+ public:
+  Tsvd(const FrameProblem<T>& problem, Workspace& memory) noexcept
+      : problem_(problem),
+        rows_(problem.a.rows),
+        n_(problem.pixels()),
+        samples_(problem, memory),
+        filled_(memory.take<T>(rows_)),
+        modes_(memory.take<T>(problem.modes.rank)),
+        picture_(memory.take<T>(n_)),
+        index_(memory.take<std::size_t>(problem.max_reweighted)),
+        system_(memory.take<double>(problem.max_reweighted * problem.max_reweighted)),
+        unknown_(memory.take<double>(problem.max_reweighted)) {}
+
+  FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
+    FrameInfo info = begin_outcome(problem_);
+    if (!samples_.gather(y, weights) || samples_.channels_reweighted() > problem_.max_reweighted || !fill()) {
+      deliver(picture_, false, n_, info, x);
+      return info;
+    }
+    project(filled_);
+    for (std::size_t r = 0; r < problem_.modes.rank; ++r) modes_[r] *= problem_.modes.inverse_squares[r];
+    for (std::size_t i = 0; i < rows_; ++i) filled_[i] = dot(row(i), modes_, problem_.modes.rank);
+    for (std::size_t k = 0; k < n_; ++k) picture_[k] = T(0);
+    samples_.adjoint_accumulate(filled_, picture_);
+    flush_tiny(picture_, n_);
+    evaluate(samples_, picture_, 0.0, filled_, info);
+    info.iterations = 1;
+    info.health = Health::converged;
+    deliver(picture_, true, n_, info, x);
+    return info;
+  }
+
+ private:
+  [[nodiscard]] const T* row(std::size_t i) const noexcept { return problem_.modes.left + i * problem_.modes.rank; }
+
+  /// modes_ = U' samples
+  void project(const T* samples) noexcept {
+    for (std::size_t r = 0; r < problem_.modes.rank; ++r) modes_[r] = T(0);
+    for (std::size_t i = 0; i < rows_; ++i) accumulate(row(i), samples[i], modes_, problem_.modes.rank);
+  }
+
+  /// filled_ = the samples, with what the fit says in place of what is missing. False when numbers run out of range.
+  bool fill() noexcept {
+    std::size_t reweighted = 0;
+    for (std::size_t i = 0; i < rows_; ++i) {
+      filled_[i] = samples_.weights()[i] * samples_.values()[i];
+      if (samples_.weights()[i] != T(1)) index_[reweighted++] = i;
+    }
+    if (reweighted == 0) return true;
+    project(filled_);
+    for (std::size_t s = 0; s < reweighted; ++s) {
+      const T* at = row(index_[s]);
+      for (std::size_t t = 0; t <= s; ++t) {
+        system_[s * reweighted + t] = -static_cast<double>(dot(at, row(index_[t]), problem_.modes.rank));
+      }
+      const double lacks = 1.0 - static_cast<double>(samples_.weights()[index_[s]]);
+      system_[s * reweighted + s] += (1.0 + open_direction) / lacks;
+      unknown_[s] = static_cast<double>(dot(at, modes_, problem_.modes.rank));
+    }
+    if (!cholesky_factor(system_, reweighted)) return false;
+    cholesky_solve(system_, reweighted, unknown_);
+    for (std::size_t s = 0; s < reweighted; ++s) filled_[index_[s]] += static_cast<T>(unknown_[s]);
+    return true;
+  }
+
+  const FrameProblem<T>& problem_;
+  std::size_t rows_;
+  std::size_t n_;
+  FrameSamples<T> samples_;
+  T* filled_;
+  T* modes_;
+  T* picture_;
+  std::size_t* index_;
+  double* system_;
+  double* unknown_;
+};
+
+}  // namespace
+
+template <class T>
+FrameInfo solve_tsvd(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
+                     float* x) noexcept {
+  Workspace memory(workspace);
+  return Tsvd<T>(problem, memory).solve(y, weights, x);
+}
+
+template <class T>
+std::size_t tsvd_bytes(const FrameProblem<T>& problem) noexcept {
+  Workspace counter;
+  const Tsvd<T> tsvd(problem, counter);
+  return counter.used();
+}
+
+template FrameInfo solve_tsvd(const FrameProblem<float>&, const float*, const float*, std::byte*, float*) noexcept;
+template FrameInfo solve_tsvd(const FrameProblem<double>&, const float*, const float*, std::byte*, float*) noexcept;
+template std::size_t tsvd_bytes(const FrameProblem<float>&) noexcept;
+template std::size_t tsvd_bytes(const FrameProblem<double>&) noexcept;
+
+}  // namespace compueye::recon::core

@@ -1,0 +1,113 @@
+#include "recon/setup/factor.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <vector>
+
+#include "recon/core/parts/packed_symmetric.hpp"
+#include "recon/number_text.hpp"
+#include "recon/setup/on_all_cores.hpp"
+#include "recon/setup/parity_gram.hpp"
+
+namespace compueye::recon {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+/// Largest eigenvalue of a positive definite matrix, from below and to a few per cent, which is all a limit needs.
+double largest_eigenvalue(const Matrix& matrix) {
+  // Neither constant nor alternating, so that it is orthogonal to no smooth eigenvector.
+  Eigen::VectorXd v(matrix.rows());
+  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = 1.0 + static_cast<double>(i * 7 % 13) / 13.0;
+  double norm = 0.0;
+  for (int k = 0; k < 20; ++k) {
+    v.normalize();
+    v = (matrix.selfadjointView<Eigen::Lower>() * v).eval();
+    norm = v.norm();
+  }
+  return norm;
+}
+
+/// Norms of A A' + rho I and of its inverse in one parity class.
+struct ClassNorms {
+  double matrix = 0.0;
+  double inverse = 0.0;
+};
+
+/// matrix becomes (matrix + rho I)^-1; false when it is not positive definite.
+bool invert(Matrix& matrix, double rho, ClassNorms& norms) {
+  if (matrix.size() == 0) return true;
+  matrix.diagonal().array() += rho;
+  norms.matrix = largest_eigenvalue(matrix);
+  Eigen::LLT<Eigen::Ref<Matrix>> factor(matrix);
+  if (factor.info() != Eigen::Success) return false;
+  Matrix inverse = Matrix::Identity(matrix.rows(), matrix.cols());
+  factor.solveInPlace(inverse);
+  matrix = 0.5 * (inverse + inverse.transpose());
+  norms.inverse = largest_eigenvalue(matrix);
+  return matrix.allFinite();
+}
+
+/// Rounding the inverse moves its eigenvalues by `rounding` of the largest: beyond the smallest, it is noise.
+hal::Result<void> check_condition(const std::vector<ClassNorms>& classes, bool definite, double rho, double rounding) {
+  double norm = 0.0, inverse_norm = 0.0;
+  for (const ClassNorms& norms : classes) {
+    norm = std::max(norm, norms.matrix);
+    inverse_norm = std::max(inverse_norm, norms.inverse);
+  }
+  if (definite && norm * inverse_norm * rounding < 0.5) return {};
+  return hal::fail(hal::ErrorCode::out_of_range, "rho",
+                   "is " + number_text(rho) + ", too small for this response (||A||^2 is " + number_text(norm) +
+                       ") at this precision; expected " + number_text(4.0 * rounding * norm) +
+                       " or more (for tikhonov, rho is lambda), or double precision");
+}
+
+hal::Result<void> invert_blocks(ParityGram& gram, double rho, double rounding, const Progress& progress) {
+  std::vector<ClassNorms> norms(gram.classes().count());
+  std::atomic<bool> definite{true};
+  const bool inverted = on_all_cores(static_cast<int>(gram.classes().count()), "inverse", progress, [&] {
+    return [&](int c) {
+      const auto at = static_cast<std::size_t>(c);
+      if (!invert(gram.block(at), rho, norms[at])) definite = false;
+    };
+  });
+  if (inverted) return check_condition(norms, definite, rho, rounding);
+  return hal::fail(hal::ErrorCode::interrupted, "set-up", "stopped before the factor was finished");
+}
+
+}  // namespace
+
+std::size_t factor_size(const ParityClasses& classes) noexcept {
+  std::size_t total = 0;
+  for (std::size_t c = 0; c < classes.count(); ++c) {
+    total += core::PackedSymmetric<float>::size(static_cast<std::size_t>(classes.order(c)));
+  }
+  return total;
+}
+
+template <class T>
+hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols, MetricKind metric,
+                                           double rho, const Progress& progress) {
+  ParityGram gram(seeing, image_rows, image_cols, metric);
+  constexpr double rounding = 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon());
+  if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
+  if (auto done = invert_blocks(gram, rho, rounding, progress); !done) return tl::unexpected(done.error());
+  std::vector<T> packed;
+  packed.reserve(factor_size(gram.classes()));
+  for (std::size_t c = 0; c < gram.classes().count(); ++c) {
+    const Matrix& block = gram.block(c);
+    for (Eigen::Index i = 0; i < block.rows(); ++i) {
+      for (Eigen::Index j = i; j < block.cols(); ++j) packed.push_back(static_cast<T>(block(i, j)));
+    }
+  }
+  return packed;
+}
+
+template hal::Result<std::vector<float>> packed_inverse(const Response&, int, int, MetricKind, double, const Progress&);
+template hal::Result<std::vector<double>> packed_inverse(const Response&, int, int, MetricKind, double,
+                                                         const Progress&);
+
+}  // namespace compueye::recon

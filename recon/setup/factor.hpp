@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "hal/result.hpp"
+#include "recon/core/parts/frame_info.hpp"
+#include "recon/response.hpp"
+
+namespace compueye::recon {
+
+/// `done` of `total` units of set-up work; return false to give up (error: interrupted).
+using Progress = std::function<bool(std::string_view what, double done, double total)>;
+
+/// K0 of the quadratic step (core/metric.hpp).
+enum class MetricKind : std::uint8_t { identity, smoothing };
+
+[[nodiscard]] constexpr MetricKind metric_of(BasisKind basis) noexcept {
+  return basis == BasisKind::tv ? MetricKind::smoothing : MetricKind::identity;
+}
+
+/// Whether a solver works with a cached factor at all.
+[[nodiscard]] constexpr bool uses_factor(SolverKind solver) noexcept {
+  return solver == SolverKind::admm || solver == SolverKind::adm || solver == SolverKind::tikhonov ||
+         solver == SolverKind::pdhg;
+}
+
+/// The metric of the factor that a solver keeps: modes are always those of A A'.
+[[nodiscard]] constexpr MetricKind metric_of(SolverKind solver, BasisKind basis) noexcept {
+  return solver == SolverKind::pdhg ? MetricKind::identity : metric_of(basis);
+}
+
+/// What makes a frame cheap, made in double, kept in float32, and worth storing: it is the slow part of setting up a
+/// solver. Either the inverse (A K0^-1 A' + rho I)^-1 of the seeing rows, a packed upper triangle by rows for each
+/// parity class, one after the other; or, for pdhg, the leading modes of A A' (recon/setup/leading_modes.hpp).
+struct Factor {
+  double rho = 0.0;           ///< of an inverse; modes serve every rho
+  int order = 0;              ///< number of seeing rows
+  std::vector<float> values;  ///< factor_size() or modes_size() of its classes
+  MetricKind metric = MetricKind::identity;
+  int rank = 0;  ///< how many modes, 0: it is an inverse
+};
+
+class ParityClasses;
+
+/// Values that the triangles of all classes take.
+[[nodiscard]] std::size_t factor_size(const ParityClasses& classes) noexcept;
+
+/// (A K0^-1 A' + rho I)^-1 computed in double, packed as Factor::inverse is, rounded once to T. `seeing` has no blind
+/// rows and lies on an image_rows x image_cols picture; rho > 0.
+/// Errors: interrupted; out_of_range when rho is too small for the matrix to be inverted in double or its inverse to
+/// be kept in T (condition number times rounding error of T above a half).
+template <class T>
+[[nodiscard]] hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols,
+                                                         MetricKind metric, double rho, const Progress& progress);
+
+}  // namespace compueye::recon

@@ -1,0 +1,104 @@
+#include "recon/setup/leading_modes.hpp"
+
+#include <Spectra/MatOp/DenseSymMatProd.h>
+#include <Spectra/SymEigsSolver.h>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <atomic>
+
+#include "recon/setup/on_all_cores.hpp"
+#include "recon/setup/parity_gram.hpp"
+
+namespace compueye::recon {
+namespace {
+
+struct Pairs {
+  Eigen::VectorXd values;  // largest first, one more than the vectors where there is one more
+  Eigen::MatrixXd vectors;
+};
+
+/// A class that keeps most of its modes is decomposed whole: Lanczos would have to find nearly all of them anyway.
+constexpr Eigen::Index whole_below = 200;
+
+bool decomposes_whole(Eigen::Index order, Eigen::Index count) {
+  return order <= whole_below || 3 * count > order;
+}
+
+Pairs whole(const Eigen::MatrixXd& gram, Eigen::Index count) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+  const Eigen::Index values = std::min(count + 1, gram.rows());
+  return {eigen.eigenvalues().tail(values).reverse(), eigen.eigenvectors().rightCols(count).rowwise().reverse()};
+}
+
+/// False when Lanczos did not settle.
+bool leading(const Eigen::MatrixXd& gram, Eigen::Index count, Pairs& pairs) {
+  if (decomposes_whole(gram.rows(), count)) {
+    pairs = whole(gram, count);
+    return true;
+  }
+  Spectra::DenseSymMatProd<double> product(gram);
+  Spectra::SymEigsSolver<Spectra::DenseSymMatProd<double>> solver(product, count + 1, 2 * count + 20);
+  solver.init();
+  constexpr int most_restarts = 300;
+  constexpr double tolerance = 1e-9;
+  if (solver.compute(Spectra::SortRule::LargestAlge, most_restarts, tolerance) < count + 1) return false;
+  pairs = {solver.eigenvalues(), solver.eigenvectors().leftCols(count)};
+  return true;
+}
+
+void append(const Pairs& pairs, std::size_t count, std::vector<float>& packed) {
+  const auto modes = static_cast<Eigen::Index>(count);
+  for (Eigen::Index k = 0; k <= modes; ++k) {
+    // A A' has no negative ones but by rounding.
+    packed.push_back(k < pairs.values.size() ? static_cast<float>(std::max(pairs.values[k], 0.0)) : 0.0F);
+  }
+  for (Eigen::Index p = 0; p < pairs.vectors.rows(); ++p) {
+    for (Eigen::Index k = 0; k < modes; ++k) packed.push_back(static_cast<float>(pairs.vectors(p, k)));
+  }
+}
+
+}  // namespace
+
+std::size_t modes_of_class(const ParityClasses& classes, std::size_t parity_class, int rank) noexcept {
+  const auto order = static_cast<std::size_t>(classes.order(parity_class));
+  const std::size_t share = (static_cast<std::size_t>(rank) + classes.count() - 1) / classes.count();
+  return std::min(order, share);
+}
+
+std::size_t modes_size(const ParityClasses& classes, int rank) noexcept {
+  std::size_t total = 0;
+  for (std::size_t c = 0; c < classes.count(); ++c) {
+    const std::size_t modes = modes_of_class(classes, c, rank);
+    total += modes + 1 + modes * static_cast<std::size_t>(classes.order(c));
+  }
+  return total;
+}
+
+hal::Result<std::vector<float>> leading_modes(const Response& seeing, int image_rows, int image_cols, int rank,
+                                              const Progress& progress) {
+  ParityGram gram(seeing, image_rows, image_cols, MetricKind::identity);
+  if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
+  const ParityClasses& classes = gram.classes();
+  std::vector<Pairs> pairs(classes.count());
+  std::atomic<bool> settled{true};
+  const bool done = on_all_cores(static_cast<int>(classes.count()), "modes", progress, [&] {
+    return [&](int c) {
+      const auto at = static_cast<std::size_t>(c);
+      const std::size_t count = modes_of_class(classes, at, rank);
+      if (count > 0 && !leading(gram.block(at), static_cast<Eigen::Index>(count), pairs[at])) settled = false;
+    };
+  });
+  if (!done) return hal::fail(hal::ErrorCode::interrupted, "set-up", "stopped before the modes were found");
+  if (!settled) {
+    return hal::fail(hal::ErrorCode::unsupported, "modes",
+                     "of this response do not settle: too many of its singular values are the same; ask for another "
+                     "number of them with --rank, or for another solver");
+  }
+  std::vector<float> packed;
+  packed.reserve(modes_size(classes, rank));
+  for (std::size_t c = 0; c < classes.count(); ++c) append(pairs[c], modes_of_class(classes, c, rank), packed);
+  return packed;
+}
+
+}  // namespace compueye::recon

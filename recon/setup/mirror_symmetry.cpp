@@ -1,0 +1,148 @@
+#include "recon/setup/mirror_symmetry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace compueye::recon {
+namespace {
+
+using Permutation = std::vector<std::int32_t>;
+using CentroidKey = std::pair<std::int64_t, std::int64_t>;
+
+struct Flip {
+  bool left_right = false;
+  bool up_down = false;
+  bool transposed = false;
+};
+
+/// Finds, for every row, the row that is its mirror image: candidates by the centroid of their receptive fields, then
+/// entry by entry.
+class MirrorSearch {
+ public:
+  MirrorSearch(const Response& response, int image_rows, int image_cols)
+      : response_(response), image_rows_(image_rows), image_cols_(image_cols) {
+    mirrored_.resize(static_cast<std::size_t>(response.cols()));
+    double largest = 0.0;
+    for (int m = 0; m < response.rows(); ++m) {
+      rows_at_[key(centroid(m))].push_back(m);
+      response.for_each_in_row(m, [&](std::int32_t, double v) { largest = std::max(largest, std::abs(v)); });
+    }
+    tolerance_ = 1e-11 * largest;
+  }
+
+  [[nodiscard]] std::optional<Permutation> find(Flip flip) {
+    Permutation permutation(static_cast<std::size_t>(response_.rows()), -1);
+    for (int m = 0; m < response_.rows(); ++m) {
+      const std::optional<int> image = image_of(m, flip);
+      if (!image) return std::nullopt;
+      permutation[static_cast<std::size_t>(m)] = *image;
+    }
+    for (std::size_t m = 0; m < permutation.size(); ++m) {
+      if (permutation[static_cast<std::size_t>(permutation[m])] != static_cast<std::int32_t>(m)) return std::nullopt;
+    }
+    return permutation;
+  }
+
+ private:
+  struct Point {
+    double row = 0.0, col = 0.0;
+  };
+
+  [[nodiscard]] Point centroid(int m) const {
+    double sum = 0.0, by_row = 0.0, by_col = 0.0;
+    response_.for_each_in_row(m, [&](std::int32_t n, double v) {
+      const std::int32_t row = n / image_cols_, col = n % image_cols_;
+      sum += std::abs(v);
+      by_row += std::abs(v) * row;
+      by_col += std::abs(v) * col;
+    });
+    if (!(sum > 0.0)) return {};
+    return {by_row / sum, by_col / sum};
+  }
+
+  [[nodiscard]] static CentroidKey key(Point p) { return {std::llround(p.row * 1e5), std::llround(p.col * 1e5)}; }
+
+  [[nodiscard]] std::int32_t flipped(std::int32_t n, Flip flip) const {
+    const std::int32_t row = n / image_cols_, col = n % image_cols_;
+    if (flip.transposed) return col * image_cols_ + row;
+    return (flip.up_down ? image_rows_ - 1 - row : row) * image_cols_ + (flip.left_right ? image_cols_ - 1 - col : col);
+  }
+
+  [[nodiscard]] std::optional<int> image_of(int m, Flip flip) {
+    Point p = centroid(m);
+    if (flip.up_down) p.row = image_rows_ - 1 - p.row;
+    if (flip.left_right) p.col = image_cols_ - 1 - p.col;
+    if (flip.transposed) std::swap(p.row, p.col);
+    const CentroidKey at = key(p);
+    response_.for_each_in_row(
+        m, [&](std::int32_t n, double v) { mirrored_[static_cast<std::size_t>(flipped(n, flip))] = v; });
+    std::optional<int> found;
+    for (std::int64_t dr = -1; dr <= 1 && !found; ++dr) {
+      for (std::int64_t dc = -1; dc <= 1 && !found; ++dc) {
+        const auto candidates = rows_at_.find({at.first + dr, at.second + dc});
+        if (candidates == rows_at_.end()) continue;
+        for (const int candidate : candidates->second) {
+          if (!found && equals_mirrored(candidate, m)) found = candidate;
+        }
+      }
+    }
+    response_.for_each_in_row(
+        m, [&](std::int32_t n, double) { mirrored_[static_cast<std::size_t>(flipped(n, flip))] = 0.0; });
+    return found;
+  }
+
+  [[nodiscard]] bool equals_mirrored(int candidate, int original) const {
+    double difference = 0.0, sum = 0.0, original_sum = 0.0;
+    response_.for_each_in_row(candidate, [&](std::int32_t n, double v) {
+      difference = std::max(difference, std::abs(v - mirrored_[static_cast<std::size_t>(n)]));
+      sum += v * v;
+    });
+    response_.for_each_in_row(original, [&](std::int32_t, double v) { original_sum += v * v; });
+    // The candidate's entries all agree; equal norms exclude entries that only the original has.
+    return difference <= tolerance_ && std::abs(sum - original_sum) <= 1e-9 * original_sum;
+  }
+
+  const Response& response_;
+  int image_rows_;
+  int image_cols_;
+  std::map<CentroidKey, std::vector<int>> rows_at_;
+  std::vector<double> mirrored_;
+  double tolerance_ = 0.0;
+};
+
+}  // namespace
+
+MirrorSymmetry find_mirror_symmetry(const Response& response, int image_rows, int image_cols) {
+  Permutation identity(static_cast<std::size_t>(response.rows()));
+  std::iota(identity.begin(), identity.end(), 0);
+  MirrorSymmetry symmetry{{identity}, {{1}}};
+  MirrorSearch search(response, image_rows, image_cols);
+  const auto left_right = search.find({.left_right = true});
+  const auto up_down = search.find({.up_down = true});
+  if (left_right) {
+    symmetry.permutations.push_back(*left_right);
+    symmetry.characters = {{1, 1}, {1, -1}};
+  }
+  if (up_down) {
+    symmetry.permutations.push_back(*up_down);
+    symmetry.characters = {{1, 1}, {1, -1}};
+  }
+  if (left_right && up_down) {
+    Permutation both(identity.size());
+    for (std::size_t m = 0; m < both.size(); ++m) both[m] = (*left_right)[static_cast<std::size_t>((*up_down)[m])];
+    symmetry.permutations.push_back(std::move(both));
+    symmetry.characters = {{1, 1, 1, 1}, {1, -1, 1, -1}, {1, 1, -1, -1}, {1, -1, -1, 1}};
+  }
+  return symmetry;
+}
+
+std::vector<std::int32_t> find_diagonal_symmetry(const Response& response, int image_rows, int image_cols) {
+  if (image_rows != image_cols) return {};
+  return MirrorSearch(response, image_rows, image_cols).find({.transposed = true}).value_or(Permutation{});
+}
+
+}  // namespace compueye::recon

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "recon/setup/factor.hpp"
+
+namespace compueye::recon {
+
+/// Calls work(i) for i = 0 .. count-1 on all cores while this thread reports; false when the user gave up.
+template <class Work>
+bool on_all_cores(int count, std::string_view what, const Progress& progress, Work make_work) {
+  if (progress && !progress(what, 0, count)) return false;
+  std::atomic<int> next{0}, done{0};
+  std::atomic<bool> stop{false};
+  const auto body = [&] {
+    auto work = make_work();
+    for (int i = next++; i < count && !stop; i = next++) {
+      work(i);
+      ++done;
+    }
+  };
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<std::thread> threads;
+  for (unsigned t = 0; t < std::min(cores, static_cast<unsigned>(count)); ++t) threads.emplace_back(body);
+  while (done < count && !stop) {
+    if (progress && !progress(what, done, count)) stop = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  for (std::thread& thread : threads) thread.join();
+  if (!stop && progress) progress(what, count, count);
+  return !stop;
+}
+
+}  // namespace compueye::recon

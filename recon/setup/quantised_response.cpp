@@ -1,0 +1,61 @@
+#include "recon/setup/quantised_response.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace compueye::recon {
+
+bool is_lossy(OperatorKind kind) noexcept {
+  return kind == OperatorKind::dense_runs_bf16 || kind == OperatorKind::dense_runs_int8;
+}
+
+float int8_scale(double largest) noexcept {
+  return largest < least_row_peak ? 0.0F : static_cast<float>(largest / 127.0);
+}
+
+std::int8_t int8_of(double value, float scale) noexcept {
+  if (scale == 0.0F) return 0;
+  return static_cast<std::int8_t>(std::clamp(std::nearbyint(value / static_cast<double>(scale)), -127.0, 127.0));
+}
+
+std::uint16_t bf16_of(double value) noexcept {
+  constexpr double most = 0x1.FEp127;
+  const auto rounded = static_cast<float>(std::clamp(value, -most, most));
+  if (std::abs(rounded) < std::numeric_limits<float>::min()) return 0;
+  const auto bits = std::bit_cast<std::uint32_t>(rounded);
+  const std::uint32_t even = (bits >> 16U) & 1U;
+  return static_cast<std::uint16_t>((bits + 0x7FFFU + even) >> 16U);
+}
+
+float float_of_bf16(std::uint16_t bits) noexcept {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(bits) << 16U);
+}
+
+Response quantised(const Response& response, OperatorKind kind) {
+  if (!is_lossy(kind)) return response;
+  std::vector<std::int64_t> row_start{0};
+  std::vector<std::int32_t> columns;
+  std::vector<double> values;
+  for (int m = 0; m < response.rows(); ++m) {
+    double largest = 0.0;
+    response.for_each_in_row(m, [&](std::int32_t, double v) { largest = std::max(largest, std::abs(v)); });
+    const float scale = int8_scale(largest);
+    response.for_each_in_row(m, [&](std::int32_t n, double v) {
+      const double stored = kind == OperatorKind::dense_runs_int8 ? int8_of(v, scale) * static_cast<double>(scale)
+                                                                  : static_cast<double>(float_of_bf16(bf16_of(v)));
+      if (stored == 0.0) return;
+      columns.push_back(n);
+      values.push_back(stored);
+    });
+    row_start.push_back(static_cast<std::int64_t>(values.size()));
+  }
+  // The same shape with finite values: from_csr() has nothing to refuse.
+  return std::move(*Response::from_csr(response.rows(), response.cols(), std::move(row_start), std::move(columns),
+                                       std::move(values)));
+}
+
+}  // namespace compueye::recon

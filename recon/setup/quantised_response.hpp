@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+#include "recon/core/parts/frame_info.hpp"
+#include "recon/response.hpp"
+
+namespace compueye::recon {
+
+/// Whether this form of A keeps fewer digits than the precision of the frame path.
+[[nodiscard]] bool is_lossy(OperatorKind kind) noexcept;
+
+/// The matrix that a lossy operator applies, every entry as it is stored; any other kind: the response itself. Factor,
+/// modes, step sizes, norms and the rules for lambda and rho are to be computed from it: a factor of the unrounded
+/// matrix inverts another one than the frame path applies, and solvers would end where neither is solved.
+/// Quantising twice is quantising once.
+///
+/// bf16: 8 bits of mantissa, rounding to nearest, ties to even. int8: the row's largest magnitude over 127 times a
+/// whole number; a row whose largest entry is below least_row_peak has no scale and becomes blind.
+[[nodiscard]] Response quantised(const Response& response, OperatorKind kind);
+
+inline constexpr double least_row_peak = 1e-30;
+
+/// Of a row with this largest magnitude; 0 below least_row_peak.
+[[nodiscard]] float int8_scale(double largest) noexcept;
+[[nodiscard]] std::int8_t int8_of(double value, float scale) noexcept;
+
+/// The upper half of the nearest bfloat16; numbers below the least normal float are 0.
+[[nodiscard]] std::uint16_t bf16_of(double value) noexcept;
+[[nodiscard]] float float_of_bf16(std::uint16_t bits) noexcept;
+
+}  // namespace compueye::recon

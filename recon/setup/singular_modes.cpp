@@ -1,0 +1,92 @@
+#include "recon/setup/singular_modes.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "recon/number_text.hpp"
+#include "recon/setup/on_all_cores.hpp"
+#include "recon/setup/parity_gram.hpp"
+
+namespace compueye::recon {
+namespace {
+
+/// A A' squares the condition number, so double leaves about half its digits to the singular values.
+constexpr double least_share = 1e-6;
+
+struct Mode {
+  double square = 0.0;
+  std::size_t parity_class = 0;
+  Eigen::Index column = 0;
+};
+
+/// Every mode above rounding, largest first; ties by class and column, so that the order is always the same.
+std::vector<Mode> sorted_modes(const std::vector<Eigen::VectorXd>& squares) {
+  std::vector<Mode> modes;
+  double largest = 0.0;
+  for (const Eigen::VectorXd& of_class : squares) {
+    if (of_class.size() > 0) largest = std::max(largest, of_class.maxCoeff());
+  }
+  for (std::size_t c = 0; c < squares.size(); ++c) {
+    for (Eigen::Index k = squares[c].size(); k-- > 0;) {
+      if (squares[c][k] > least_share * least_share * largest) modes.push_back({squares[c][k], c, k});
+    }
+  }
+  std::stable_sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) { return a.square > b.square; });
+  return modes;
+}
+
+hal::Result<std::vector<Mode>> chosen_modes(std::vector<Mode> modes, int rank, double least_square) {
+  const auto all = static_cast<int>(modes.size());
+  if (rank > all) {
+    return hal::fail(hal::ErrorCode::out_of_range, "rank",
+                     "is " + std::to_string(rank) + ", expected 1 to " + std::to_string(all) +
+                         ": no more singular values of this response stand above rounding");
+  }
+  const auto above = std::find_if(modes.begin(), modes.end(), [=](const Mode& m) { return m.square < least_square; });
+  const auto count = static_cast<std::size_t>(above - modes.begin());
+  if (count == 0) {
+    return hal::fail(hal::ErrorCode::out_of_range, "lambda",
+                     "is " + number_text(least_square) + ", expected at most " +
+                         number_text(modes.empty() ? 0.0 : modes.front().square) +
+                         ", the square of the largest singular value: no mode would be left");
+  }
+  modes.resize(rank > 0 ? std::min(count, static_cast<std::size_t>(rank)) : count);
+  return modes;
+}
+
+}  // namespace
+
+hal::Result<ModeTable> singular_modes(const Response& seeing, int image_rows, int image_cols, int rank,
+                                      double least_square, const Progress& progress) {
+  ParityGram gram(seeing, image_rows, image_cols, MetricKind::identity);
+  if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
+  std::vector<Eigen::VectorXd> squares(gram.classes().count());
+  const bool done = on_all_cores(static_cast<int>(gram.classes().count()), "singular values", progress, [&] {
+    return [&](int c) {
+      const auto at = static_cast<std::size_t>(c);
+      if (gram.block(at).size() == 0) return;
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram.block(at));
+      squares[at] = eigen.eigenvalues();
+      gram.block(at) = eigen.eigenvectors();
+    };
+  });
+  if (!done) return hal::fail(hal::ErrorCode::interrupted, "set-up", "stopped before the singular values were found");
+  const auto modes = chosen_modes(sorted_modes(squares), rank, least_square);
+  if (!modes) return tl::unexpected(modes.error());
+  ModeTable table;
+  table.order = gram.classes().rows();
+  for (const Mode& mode : *modes) table.values.push_back(std::sqrt(mode.square));
+  table.left.reserve(static_cast<std::size_t>(table.order) * modes->size());
+  for (int m = 0; m < table.order; ++m) {
+    for (const Mode& mode : *modes) {
+      const int p = gram.classes().index(mode.parity_class, m);
+      table.left.push_back(
+          p < 0 ? 0.0 : gram.classes().share(mode.parity_class, m) * gram.block(mode.parity_class)(p, mode.column));
+    }
+  }
+  return table;
+}
+
+}  // namespace compueye::recon

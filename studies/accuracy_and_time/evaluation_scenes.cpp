@@ -1,0 +1,140 @@
+#include "studies/accuracy_and_time/evaluation_scenes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/simulated_board.hpp"
+#include "hal/sample_block.hpp"
+#include "hal/sample_source.hpp"
+#include "sim/built_in_scenes.hpp"
+#include "sim/optics.hpp"
+#include "sim/scene_truth.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::ErrorCode;
+using hal::Result;
+
+Result<void> check_name(const std::string& name) {
+  if (name == "fig2") {
+    return hal::fail(ErrorCode::usage, "--scenes",
+                     "has fig2, which is one and the same drawing for every seed; dots are like it");
+  }
+  const auto known = sim::built_in_scenes();
+  if (std::any_of(known.begin(), known.end(), [&](const auto& scene) { return scene.name == name; })) return {};
+  return hal::fail(ErrorCode::usage, "--scenes",
+                   fmt::format("has '{}', expected built-in scenes, which draw another picture for every seed: "
+                               "line-art, phantom, bars, dots",
+                               name));
+}
+
+Result<EvaluationScene> drawn(const Board& board, const sim::Optics& optics, const std::string& name,
+                              std::uint64_t seed, bool moving) {
+  const auto scene = choose_scene(board, {name, seed, std::nullopt});
+  if (!scene) return tl::unexpected(scene.error());
+  auto truth = sim::scene_truth(*scene, board.object);
+  if (!truth) return tl::unexpected(std::move(truth.error()));
+  auto signals = optics.expose(*scene);
+  if (!signals) return tl::unexpected(std::move(signals.error()));
+  EvaluationScene drawing{name, seed, std::move(*truth), std::move(*signals), {}};
+  for (std::size_t left = moving_frames; moving && left > 0; --left) {
+    sim::Scene earlier = *scene;
+    earlier.picture = before_arrival(scene->picture, left);
+    auto before = optics.expose(earlier);
+    if (!before) return tl::unexpected(std::move(before.error()));
+    drawing.moving.push_back(std::move(*before));
+  }
+  return drawing;
+}
+
+/// Signals of frame `frame` of a sequence. The piece waits outside until it moves.
+const std::vector<double>& signals_of(const EvaluationScene& scene, Motion motion, std::size_t frame) {
+  const std::size_t left = sequence_frames - 1 - frame;
+  if (motion != Motion::sprite || left == 0) return scene.signals;
+  return scene.moving[moving_frames - std::min(left, moving_frames)];
+}
+
+}  // namespace
+
+std::vector<std::string> usual_scenes(const Board& board) {
+  constexpr int least = 32;
+  if (std::min(board.object.rows, board.object.cols) < least) return {"dots"};
+  return {"line-art", "phantom", "bars"};
+}
+
+Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board, const std::vector<std::string>& names,
+                                                            bool moving, const recon::Progress& progress) {
+  for (const std::string& name : names) {
+    if (auto known = check_name(name); !known) return tl::unexpected(std::move(known.error()));
+  }
+  sim::Optics optics = simulated_eye_settings(board, {}, 0).optics;
+  optics.profile = sim::AngularProfile::flat_top(optics.eye.acceptance_rad);
+  std::vector<EvaluationScene> scenes;
+  while (scenes.size() < evaluation_scenes) {
+    if (!progress("evaluation scenes", static_cast<double>(scenes.size()), static_cast<double>(evaluation_scenes))) {
+      return hal::fail(ErrorCode::interrupted, board.name, "stopped before anything was measured");
+    }
+    const std::size_t i = scenes.size();
+    auto scene = drawn(board, optics, names[i % names.size()], first_evaluation_seed + i, moving);
+    if (!scene) return tl::unexpected(std::move(scene.error()));
+    scenes.push_back(std::move(*scene));
+  }
+  return scenes;
+}
+
+Board with_noise(const Board& board, double times) {
+  constexpr double rounding = 1.0 / 12.0;  // variance of a code, in LSB squared
+  Board noisy = board;
+  const double own = board.sensor.read_noise_lsb * board.sensor.read_noise_lsb + rounding;
+  noisy.sensor.read_noise_lsb = std::sqrt(std::max(0.0, own * times * times - rounding));
+  return noisy;
+}
+
+Result<std::vector<FrameSequence>> take_frames(const Board& board, const std::vector<EvaluationScene>& scenes,
+                                               const std::vector<std::uint8_t>& sees, const NoiseLevel& level,
+                                               Motion motion) {
+  const Board noisy = with_noise(board, level.times);
+  const auto sensor = sim::Sensor::create(simulated_eye_settings(noisy, {}, 0).sensor);
+  if (!sensor) return tl::unexpected(sensor.error());
+  const auto channels = static_cast<std::size_t>(board.eye.ommatidia());
+  hal::SourceDescription description;
+  description.channels = board.eye.ommatidia();
+  description.bits = board.sensor.bits;
+  description.ommatidium_of_channel.resize(channels);
+  std::iota(description.ommatidium_of_channel.begin(), description.ommatidium_of_channel.end(), 0);
+  description.sample_offset_ns.assign(channels, 0);
+  auto correction = Correction::create(correction_settings(noisy, sees), description);
+  if (!correction) return tl::unexpected(std::move(correction.error()));
+  std::vector<std::uint8_t> valid(channels, 1);
+  for (const int dead : board.sensor.dead) valid[static_cast<std::size_t>(dead)] = 0;
+  std::vector<double> levels_lsb(channels);
+  std::vector<std::int32_t> codes(channels);
+  std::vector<FrameSequence> sequences;
+  for (const EvaluationScene& scene : scenes) {
+    FrameSequence& sequence = sequences.emplace_back();
+    for (std::size_t f = motion == Motion::none ? sequence_frames - 1 : 0; f < sequence_frames; ++f) {
+      hal::SampleBlock block;
+      block.flags.saturated = sensor->digitise(signals_of(scene, motion, f), scene.seed, f, levels_lsb, codes);
+      block.codes = codes;
+      block.valid = valid;
+      block.bits = board.sensor.bits;
+      EvaluationFrame frame{std::vector<float>(channels), std::vector<float>(channels)};
+      const CorrectionReport report = correction->apply(block, frame.y, frame.weights);
+      if (!report.usable) {
+        return hal::fail(ErrorCode::mismatch, board.place("sensor", "max_missing_share"),
+                         fmt::format("a frame of {} lacks {} channels, {} of them saturated, and would be dropped",
+                                     scene.name, report.masked, report.saturated));
+      }
+      sequence.push_back(std::move(frame));
+    }
+  }
+  return sequences;
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "firmware/eye/board.hpp"
+#include "firmware/eye/picture_quality.hpp"
+#include "hal/image.hpp"
+#include "hal/result.hpp"
+#include "recon/setup/factor.hpp"
+#include "studies/accuracy_and_time/motion.hpp"
+
+namespace compueye::firmware {
+
+/// Pictures that no rule was fitted on: docs/lambda-rule.md has seeds up to 5 and from 1001 on, boards show seed 0.
+inline constexpr std::uint64_t first_evaluation_seed = 2001;
+inline constexpr std::size_t evaluation_scenes = 12;
+
+/// A drawing in front of the eye and the light that reaches each ommatidium through the simulator's optics.
+struct EvaluationScene {
+  std::string name;
+  std::uint64_t seed = 0;
+  hal::Image truth;
+  std::vector<double> signals;              ///< M, without noise
+  std::vector<std::vector<double>> moving;  ///< of the frames in which its piece moves; empty when not asked for
+};
+
+/// Corrected samples of one scene.
+struct EvaluationFrame {
+  std::vector<float> y;
+  std::vector<float> weights;
+};
+
+/// The frames of one scene in order, the judged one last.
+using FrameSequence = std::vector<EvaluationFrame>;
+
+/// A dark or a bright day: noise as a multiple of the board's own.
+struct NoiseLevel {
+  double times = 1.0;
+  double sigma = 0.0;  ///< of one sample, in white pixels: all that the rule for lambda is told
+};
+
+/// The built-in scenes that suit the eye: drawings, heads and bars where there are pixels enough to draw on (at least
+/// 32 x 32), single dots otherwise.
+[[nodiscard]] std::vector<std::string> usual_scenes(const Board& board);
+
+/// Twelve scenes, the names in turn, each with a seed of its own, and with `moving` the frames before them. Errors:
+/// usage for a scene that is no built-in one or has but one drawing (fig2); those of the optics; interrupted.
+[[nodiscard]] hal::Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board,
+                                                                               const std::vector<std::string>& names,
+                                                                               bool moving,
+                                                                               const recon::Progress& progress);
+
+/// What the board's sensor makes of every scene at this noise, and its correction of the codes. The judged frame is the
+/// same for every motion. `sees` as in CorrectionSettings. Error mismatch when a frame would be dropped.
+[[nodiscard]] hal::Result<std::vector<FrameSequence>> take_frames(const Board& board,
+                                                                  const std::vector<EvaluationScene>& scenes,
+                                                                  const std::vector<std::uint8_t>& sees,
+                                                                  const NoiseLevel& level, Motion motion);
+
+/// The board with a sensor whose noise of a sample, rounding included, is so many times its own.
+[[nodiscard]] Board with_noise(const Board& board, double times);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,135 @@
+#include "studies/accuracy_and_time/gnuplot_script.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/visible_text.hpp"
+#include "studies/accuracy_and_time/plot_curves.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+// Okabe and Ito's colours, which people with any colour vision can tell apart.
+constexpr std::array<std::string_view, most_named_curves> colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                                  "#e69f00", "#56b4e9", "#000000", "#8c6d1f"};
+constexpr std::array<int, most_named_curves> symbols{7, 5, 9, 11, 13, 15, 6, 4};
+
+/// In single quotes gnuplot changes nothing but a doubled quote.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : visible_text(text)) out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
+/// Nought has no place on a logarithmic axis.
+double drawable(double nmse) {
+  constexpr double least = 1e-9;
+  return std::max(nmse, least);
+}
+
+std::string rows_of(const Sweep& s, const std::vector<std::size_t>& points, std::size_t level) {
+  std::string text;
+  for (const std::size_t i : points) {
+    const MeasuredPoint& p = s.points[i];
+    text +=
+        fmt::format("{} {} {} {}\n", p.median_ms, drawable(p.levels[level].quality.mean.nmse), p.p999_ms, p.iterations);
+  }
+  return text;
+}
+
+/// From a little below the least value to a little above the greatest, with ticks at every decade, or at 1, 2 and 5 of
+/// it where there are few.
+std::string axis_of(char axis, double least, double greatest) {
+  constexpr double margin = 1.4, few_decades = 2.5;
+  const double lo = least / margin, hi = greatest * margin;
+  std::string ticks;
+  const bool fine = std::log10(hi / lo) < few_decades;
+  for (int exponent = static_cast<int>(std::floor(std::log10(lo))); std::pow(10.0, exponent) <= hi; ++exponent) {
+    const double decade = std::pow(10.0, exponent);
+    for (const double step : {1.0, 2.0, 5.0}) {
+      if (decade * step < lo || decade * step > hi || (step > 1.0 && !fine)) continue;
+      ticks += fmt::format("{}'{:g}' {}", ticks.empty() ? "" : ", ", decade * step, decade * step);
+    }
+  }
+  return fmt::format("set {0}range [{1}:{2}]\nset {0}tics ({3})\n", axis, lo, hi, ticks);
+}
+
+std::string axes_of(const Sweep& s, std::size_t level) {
+  constexpr double worst_shown = 2.0;  // far above a black picture nothing is worth comparing
+  double fast = s.points.front().median_ms, slow = fast, best = worst_shown, worst = 0.0;
+  for (const MeasuredPoint& p : s.points) {
+    const double nmse = drawable(p.levels[level].quality.mean.nmse);
+    fast = std::min(fast, p.median_ms);
+    slow = std::max(slow, p.median_ms);
+    best = std::min(best, nmse);
+    worst = std::max(worst, nmse);
+  }
+  if (level < s.conventional.size()) worst = std::max(worst, drawable(s.conventional[level].mean.nmse));
+  return axis_of('x', fast, slow) + axis_of('y', best, std::min(worst, worst_shown));
+}
+
+std::string head_of(const Sweep& s, std::size_t level) {
+  const std::string first = fmt::format("{}: what accuracy costs in time", s.board);
+  const std::string second =
+      fmt::format("{} scenes ({}), noise {} white pixels = {:g} x the board's", evaluation_scenes,
+                  fmt::join(s.scenes, ", "), significant(s.levels[level].sigma, 3), s.levels[level].times);
+  const std::string third = fmt::format("{}, one core where no threads are named", s.machine.cpu);
+  return fmt::format("set title {}.\"\\n\".{}.\"\\n\".{} noenhanced\n", quoted(first), quoted(second), quoted(third)) +
+         "set logscale xy\n" + axes_of(s, level) +
+         "set xlabel 'median time of a frame (ms)'\n"
+         "set ylabel 'mean NMSE (1 = a black picture)'\n"
+         "set grid xtics ytics lc rgb '#d8d8d8' lw 0.8\n"
+         "set key outside right top vertical Left reverse noenhanced spacing 1.15 samplen 2.5\n"
+         "set border lc rgb '#606060'\n"
+         "set tics nomirror\n";
+}
+
+std::string plots_of(const Sweep& s, std::size_t level, const std::vector<PlotCurve>& curves) {
+  std::string text =
+      "plot $front using 1:2 with steps lw 9 lc rgb '#d9d3f0' title 'efficient front', \\\n"
+      "  $front using 1:2:1:3 with xerrorbars pt 0 lw 1 lc rgb '#8878c8' title 'to the 99.9th percentile'";
+  if (level < s.conventional.size())
+    text += ", \\\n  conventional with lines dt 2 lw 2 lc rgb '#606060' title 'conventional eye'";
+  bool grey_titled = false;
+  for (std::size_t c = curves.size(); c-- > 0;) {
+    if (curves[c].named) continue;
+    text += fmt::format(", \\\n  $c{} using 1:2 with linespoints pt 7 ps 0.4 lw 1 lc rgb '#b8b8b8' {}", c,
+                        grey_titled ? "notitle" : "title 'every other curve'");
+    grey_titled = true;
+  }
+  for (std::size_t c = 0; c < curves.size() && curves[c].named; ++c) {
+    text += fmt::format(", \\\n  $c{} using 1:2 with linespoints pt {} ps 1.1 lw 2 lc rgb '{}' title {}", c, symbols[c],
+                        colours[c], quoted(curves[c].title));
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string gnuplot_script(const Sweep& sweep, std::size_t level, const std::string& stem) {
+  const std::vector<PlotCurve> curves = plot_curves(sweep, level);
+  std::string text = "$front << EOD\n" + rows_of(sweep, efficient_points(sweep, level), level) + "EOD\n";
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    text += fmt::format("$c{} << EOD\n", c) + rows_of(sweep, curves[c].points, level) + "EOD\n";
+  }
+  if (level < sweep.conventional.size()) {
+    text += fmt::format("conventional = {}\n", drawable(sweep.conventional[level].mean.nmse));
+  }
+  text += head_of(sweep, level);
+  const std::string plots = plots_of(sweep, level, curves);
+  text += fmt::format(
+      "set terminal svg size 1200,675 dynamic font 'sans,15' background rgb 'white'\n"
+      "set output {}\n",
+      quoted(stem + ".svg.partial"));
+  text += plots;
+  text += fmt::format("set terminal pngcairo size 1200,675 font 'sans,12' background rgb 'white'\nset output {}\n",
+                      quoted(stem + ".png.partial"));
+  return text + plots + "set output\n";
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "firmware/eye/board.hpp"
+#include "hal/image.hpp"
+#include "hal/result.hpp"
+#include "recon/core/parts/frame_info.hpp"
+#include "recon/response.hpp"
+#include "recon/setup/factor.hpp"
+#include "studies/comparison/compare_options.hpp"
+
+namespace compueye::firmware {
+
+/// One frame that every solver gets, and the truth behind it.
+struct CompareSamples {
+  std::string scene;
+  hal::Image truth;
+  recon::Response response;  ///< dead ommatidia with empty rows
+  double sigma = 0.0;        ///< of one sample, for lambda by rule
+  std::vector<float> y;      ///< M
+  std::vector<float> weights;
+  std::optional<hal::Image> conventional;  ///< what the conventional eye shows; none for a lattice that has none
+};
+
+/// Errors: those of the scene, the response file (and mismatch when it is another eye's), the nominal response and the
+/// simulated eye; interrupted.
+[[nodiscard]] hal::Result<CompareSamples> take_compare_samples(const Board& board, const CompareOptions& options,
+                                                               const recon::Progress& progress);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/eye/board.hpp"
+#include "firmware/eye/picture_quality.hpp"
+#include "hal/clock.hpp"
+#include "studies/comparison/compare_samples.hpp"
+
+namespace compueye::firmware {
+
+/// What one contender made of the samples.
+struct ComparedRow {
+  Contender contender;
+  double lambda = 0.0;
+  int rank = 0;  ///< tsvd
+  recon::FrameInfo info;
+  double solve_ms = 0.0;  ///< median
+  double setup_s = 0.0;
+  std::uint64_t workspace_bytes = 0;
+  std::uint64_t table_bytes = 0;
+  PictureQuality quality;
+  hal::Image picture;
+  /// Objective over the least one of the same problem (basis, constraint, lambda), less 1; none for solvers whose
+  /// objective is another.
+  std::optional<double> excess;
+};
+
+struct Comparison {
+  std::string board;
+  std::string scene;
+  bool exact = false;
+  double sigma = 0.0;
+  std::int64_t seed = 0;
+  std::int64_t scene_seed = 0;
+  int channels = 0;
+  int seeing = 0;
+  hal::Image truth;
+  std::optional<hal::Image> conventional;
+  std::optional<PictureQuality> conventional_quality;
+  std::vector<ComparedRow> rows;
+  std::size_t planned = 0;           ///< rows that there would be without a stop or a failure
+  std::vector<std::string> missing;  ///< "basis constraint solver" of each that was planned and is not there
+  std::vector<std::string> notes;    ///< sentences for the user
+};
+
+/// Solves the frame in every way. A stop (`progress` returning false) keeps the rows that are done; a contender that
+/// cannot be set up or solved becomes a note. Errors: when there is no row at all, that of the first contender.
+[[nodiscard]] hal::Result<Comparison> compare_all(const Board& board, const CompareOptions& options,
+                                                  const std::vector<Contender>& contenders, CompareSamples samples,
+                                                  const hal::Clock& clock, const recon::Progress& progress);
+
+/// The row with the least NMSE; null when there is none.
+[[nodiscard]] const ComparedRow* best_of(const Comparison& comparison);
+
+}  // namespace compueye::firmware
