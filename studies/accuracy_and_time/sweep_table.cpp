@@ -8,12 +8,12 @@
 #include <span>
 #include <string_view>
 
-#include "firmware/app/options/named_kinds.hpp"
 #include "firmware/operating_points/machine.hpp"
 #include "firmware/text/number_text.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
 #include "recon/worker_threads.hpp"
+#include "studies/named_kinds.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -7,12 +7,14 @@
 #include <utility>
 
 #include "firmware/eye/kept_factor.hpp"
-#include "recon/core/parts/workspace.hpp"
+#include "firmware/pipeline/reconstructor_solver.hpp"
+#include "hal/try.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/option_names.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/penalty_rule.hpp"
 #include "recon/setup/quantised_response.hpp"
+#include "studies/comparison/samples.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -26,6 +28,10 @@ constexpr double most_timing_ms = 500.0;
 
 bool shares_objective(recon::SolverKind solver) {
   return solver != recon::SolverKind::omp && solver != recon::SolverKind::tikhonov && solver != recon::SolverKind::tsvd;
+}
+
+int threads_of(const Board& board, const CompareOptions& options) {
+  return options.threads ? static_cast<int>(*options.threads) : board.reconstruction.threads;
 }
 
 /// Runs the contenders one after the other; factors go from one to the next and, for the next time, into the board's
@@ -49,13 +55,11 @@ class Runner {
     ComparedRow row;
     row.contender = contender;
     const std::int64_t began_ns = clock_.now_ns();
-    auto made = set_up(contender, row);
-    if (!made) return tl::unexpected(std::move(made.error()));
+    row.lambda = TRY(lambda_of(contender));
+    const recon::Reconstructor solver = TRY(set_up(contender, row.lambda));
     row.setup_s = static_cast<double>(clock_.now_ns() - began_ns) * 1e-9;
-    if (auto solved = solve(*made, row); !solved) return tl::unexpected(std::move(solved.error()));
-    const auto quality = quality_of(row.picture, samples_.truth);
-    if (!quality) return tl::unexpected(quality.error());
-    row.quality = *quality;
+    TRY(solve(solver, row));
+    row.quality = TRY(quality_of(row.picture, samples_.truth));
     return row;
   }
 
@@ -71,7 +75,7 @@ class Runner {
     if (options_.iterations) plan.iterations = static_cast<int>(*options_.iterations);
     plan.relaxation = board_.reconstruction.relaxation;
     plan.op = op_;
-    plan.threads = options_.threads ? static_cast<int>(*options_.threads) : board_.reconstruction.threads;
+    plan.threads = threads_of(board_, options_);
     // The board's rho was chosen for the board's metric, and is no step of pdhg.
     const bool penalised = contender.solver == recon::SolverKind::admm || contender.solver == recon::SolverKind::adm;
     if (penalised && recon::metric_of(contender.basis) == recon::metric_of(board_.reconstruction.basis)) {
@@ -93,12 +97,9 @@ class Runner {
                                  samples_.sigma);
   }
 
-  Result<recon::Reconstructor> set_up(const Contender& contender, ComparedRow& row) {
-    const auto lambda = lambda_of(contender);
-    if (!lambda) return tl::unexpected(lambda.error());
+  Result<recon::Reconstructor> set_up(const Contender& contender, double lambda) {
     const recon::Objective objective{contender.basis, contender.constraint, board_.reconstruction.box_lo,
-                                     board_.reconstruction.box_hi, *lambda};
-    row.lambda = *lambda;
+                                     board_.reconstruction.box_hi, lambda};
     const recon::Plan plan = plan_of(contender);
     const int rows = board_.object.rows, cols = board_.object.cols;
     if (!recon::uses_factor(contender.solver)) {
@@ -110,35 +111,30 @@ class Runner {
       return recon::Reconstructor::create(response_, rows, cols, objective, plan, factor, progress_);
     }
     KeptFactor kept(board_.folder / ".cache", {hash_, wanted.rho, wanted.order, wanted.metric, wanted.rank});
-    auto made = recon::Reconstructor::create(response_, rows, cols, objective, plan, kept.take(), progress_);
-    if (!made) return made;
-    if (kept.origin() != FactorOrigin::kept) kept.keep(made->factor());
+    auto made = TRY(recon::Reconstructor::create(response_, rows, cols, objective, plan, kept.take(), progress_));
+    if (kept.origin() != FactorOrigin::kept) kept.keep(made.factor());
     notes_.insert(notes_.end(), kept.notes().begin(), kept.notes().end());
     // tikhonov's goes with its lambda, which nobody shares.
-    if (contender.solver != recon::SolverKind::tikhonov) factors_.push_back(made->factor());
+    if (contender.solver != recon::SolverKind::tikhonov) factors_.push_back(made.factor());
     return made;
   }
 
-  Result<void> solve(const recon::Reconstructor& solver, ComparedRow& row) {
-    struct alignas(recon::core::Workspace::alignment) Line {
-      std::byte bytes[recon::core::Workspace::alignment];
-    };
-    std::vector<Line> workspace((solver.required_bytes() + sizeof(Line) - 1) / sizeof(Line));
-    row.picture = hal::Image(solver.image_rows(), solver.image_cols());
+  Result<void> solve(const recon::Reconstructor& reconstructor, ComparedRow& row) {
+    ReconstructorSolver solver(reconstructor);
+    row.picture = hal::Image(reconstructor.image_rows(), reconstructor.image_cols());
     std::vector<double> times;
     double total_ms = 0.0;
     while (times.empty() || (times.size() < most_repeats && total_ms < most_timing_ms)) {
       const std::int64_t began_ns = clock_.now_ns();
-      row.info =
-          solver.solve(samples_.y, samples_.weights, std::as_writable_bytes(std::span(workspace)), row.picture.pixels);
+      row.info = solver.solve(samples_.y, samples_.weights, row.picture.pixels);
       times.push_back(static_cast<double>(clock_.now_ns() - began_ns) * 1e-6);
       total_ms += times.back();
     }
     std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
     row.solve_ms = times[times.size() / 2];
-    row.rank = solver.plan().rank;
-    row.workspace_bytes = solver.required_bytes();
-    row.table_bytes = solver.table_bytes();
+    row.rank = reconstructor.plan().rank;
+    row.workspace_bytes = reconstructor.required_bytes();
+    row.table_bytes = reconstructor.table_bytes();
     if (row.info.health != recon::Health::invalid) return {};
     return hal::fail(hal::ErrorCode::out_of_range,
                      fmt::format("{} with {}", name(row.contender.solver), name(row.contender.basis)),
@@ -186,36 +182,41 @@ void fill_excess(std::vector<ComparedRow>& rows) {
   }
 }
 
+/// What a comparison says before anything is solved.
+Result<Comparison> head_of(const Board& board, const CompareOptions& options, CompareSamples& samples) {
+  Comparison head;
+  head.board = board.name;
+  head.scene = samples.scene;
+  head.exact = options.exact;
+  head.sigma = samples.sigma;
+  head.seed = options.seed;
+  head.scene_seed = options.scene_seed;
+  head.channels = samples.response.rows();
+  head.seeing = static_cast<int>(samples.response.seeing_rows().size());
+  head.threads = threads_of(board, options);
+  if (samples.conventional) {
+    head.conventional_quality = TRY(quality_of(*samples.conventional, samples.truth));
+  } else {
+    head.notes.emplace_back("the conventional eye is left out: this lattice has no interommatidial angle");
+  }
+  return head;
+}
+
 }  // namespace
 
-Result<Comparison> compare_all(const Board& board, const CompareOptions& options,
-                               const std::vector<Contender>& contenders, CompareSamples samples,
-                               const hal::Clock& clock, const recon::Progress& progress) {
-  Comparison comparison;
-  comparison.board = board.name;
-  comparison.scene = samples.scene;
-  comparison.exact = options.exact;
-  comparison.sigma = samples.sigma;
-  comparison.seed = options.seed;
-  comparison.scene_seed = options.scene_seed;
-  if (!samples.conventional) {
-    comparison.notes.emplace_back("the conventional eye is left out: this lattice has no interommatidial angle");
-  }
-  comparison.channels = samples.response.rows();
-  comparison.seeing = static_cast<int>(samples.response.seeing_rows().size());
-  if (samples.conventional) {
-    const auto quality = quality_of(*samples.conventional, samples.truth);
-    if (!quality) return tl::unexpected(quality.error());
-    comparison.conventional_quality = *quality;
-  }
+Result<Comparison> compare(const Board& board, const CompareOptions& options, const hal::Clock& clock,
+                           const recon::Progress& progress) {
+  const std::vector<Contender> all = TRY(contenders(options, board.reconstruction.constraint));
+  CompareSamples samples = TRY(take_samples(board, options, progress));
+  Comparison comparison = TRY(head_of(board, options, samples));
   double done = 0.0;
   // One stage from the first solver to the last, so that its remaining time means something.
   const recon::Progress overall = [&](std::string_view, double, double) {
-    return progress("comparing", done, static_cast<double>(contenders.size()));
+    return progress("comparing", done, static_cast<double>(all.size()));
   };
   Runner runner(board, options, samples, clock, overall);
   std::optional<hal::Error> first_failure;
-  for (const Contender& contender : contenders) {
+  for (const Contender& contender : all) {
     if (takes_too_long(contender, options, board, samples.response)) {
       comparison.notes.emplace_back(
           "tsvd is left out: the whole spectrum of this eye takes many minutes; --solvers "
@@ -240,6 +241,9 @@ Result<Comparison> compare_all(const Board& board, const CompareOptions& options
   }
   static_cast<void>(overall("comparing", 0.0, 0.0));
   if (comparison.rows.empty() && first_failure) return tl::unexpected(std::move(*first_failure));
+  if (comparison.rows.empty() && comparison.planned > 0) {
+    return hal::fail(hal::ErrorCode::interrupted, board.name, "stopped before the first solver was done");
+  }
   fill_excess(comparison.rows);
   comparison.notes.insert(comparison.notes.end(), runner.notes().begin(), runner.notes().end());
   comparison.truth = std::move(samples.truth);
@@ -251,6 +255,31 @@ const ComparedRow* best_of(const Comparison& comparison) {
   const auto less = [](const ComparedRow& a, const ComparedRow& b) { return a.quality.nmse < b.quality.nmse; };
   const auto best = std::min_element(comparison.rows.begin(), comparison.rows.end(), less);
   return best == comparison.rows.end() ? nullptr : &*best;
+}
+
+std::vector<ComparedFigure> figures_of(const ComparedRow& row) {
+  const auto where = [](bool there, auto value) {
+    return there ? ComparedFigure::Value(value) : ComparedFigure::Value();
+  };
+  const auto count = [](auto value) { return static_cast<std::int64_t>(value); };
+  return {{"basis", name(row.contender.basis)},
+          {"constraint", name(row.contender.constraint)},
+          {"solver", name(row.contender.solver)},
+          {"lambda", row.lambda},
+          {"rank", where(row.rank > 0, count(row.rank))},
+          {"nmse", row.quality.nmse},
+          {"psnr_db", row.quality.psnr_db},
+          {"ssim", row.quality.ssim},
+          {"objective", row.info.objective},
+          {"excess", where(row.excess.has_value(), row.excess.value_or(0.0))},
+          {"duality_gap", where(row.info.duality_gap >= 0.0, row.info.duality_gap)},
+          {"residual", row.info.residual},
+          {"iterations", count(row.info.iterations)},
+          {"health", row.info.health == recon::Health::converged ? "converged" : "budget_used"},
+          {"solve_ms", row.solve_ms},
+          {"setup_s", row.setup_s},
+          {"workspace_bytes", count(row.workspace_bytes)},
+          {"table_bytes", count(row.table_bytes)}};
 }
 
 }  // namespace compueye::firmware

@@ -3,12 +3,17 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/picture_quality.hpp"
 #include "hal/clock.hpp"
-#include "studies/comparison/compare_samples.hpp"
+#include "hal/image.hpp"
+#include "recon/core/parts/frame_info.hpp"
+#include "recon/setup/factor.hpp"
+#include "studies/comparison/contenders.hpp"
 
 namespace compueye::firmware {
 
@@ -38,6 +43,7 @@ struct Comparison {
   std::int64_t scene_seed = 0;
   int channels = 0;
   int seeing = 0;
+  int threads = 1;  ///< that shared a frame's work
   hal::Image truth;
   std::optional<hal::Image> conventional;
   std::optional<PictureQuality> conventional_quality;
@@ -47,11 +53,22 @@ struct Comparison {
   std::vector<std::string> notes;    ///< sentences for the user
 };
 
-/// Solves the frame in every way. A stop (`progress` returning false) keeps the rows that are done; a contender that
-/// cannot be set up or solved becomes a note. Errors: when there is no row at all, that of the first contender.
-[[nodiscard]] hal::Result<Comparison> compare_all(const Board& board, const CompareOptions& options,
-                                                  const std::vector<Contender>& contenders, CompareSamples samples,
-                                                  const hal::Clock& clock, const recon::Progress& progress);
+/// Takes one frame of samples and solves it in every way: iterations are the options', else the board's for solvers
+/// that have a factor and ten times that for the others; lambda is the options', else the board's for its own basis,
+/// else by rule. A stop (`progress` returning false) keeps the rows that are done; a contender that cannot be set up or
+/// solved becomes a note. Errors: those of contenders() and take_samples(); when there is no row at all that of the
+/// first contender, or interrupted.
+[[nodiscard]] hal::Result<Comparison> compare(const Board& board, const CompareOptions& options,
+                                              const hal::Clock& clock, const recon::Progress& progress);
+
+/// A figure of a row for whoever writes all of them; no value: the row has none.
+struct ComparedFigure {
+  using Value = std::variant<std::monostate, std::string_view, double, std::int64_t>;
+  std::string_view key;
+  Value value;
+};
+/// Every figure of a row, the same keys in the same order for each.
+[[nodiscard]] std::vector<ComparedFigure> figures_of(const ComparedRow& row);
 
 /// The row with the least NMSE; null when there is none.
 [[nodiscard]] const ComparedRow* best_of(const Comparison& comparison);

@@ -1,4 +1,4 @@
-#include "studies/comparison/compare.hpp"
+#include "firmware/app/commands/compare_run.hpp"
 
 #include <memory>
 
@@ -9,7 +9,7 @@
 namespace compueye::firmware {
 namespace {
 
-void add_samples(CLI::App& command, CompareOptions& o) {
+void add_samples(CLI::App& command, CompareRequest& o) {
   command.add_option("--board", o.board, "folder of the board, such as boards/sim-8x8");
   command.add_option("--scene", o.scene,
                      "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
@@ -25,7 +25,7 @@ void add_samples(CLI::App& command, CompareOptions& o) {
                      "the noise that is added");
 }
 
-void add_contenders(CLI::App& command, CompareOptions& o) {
+void add_contenders(CLI::App& command, CompareRequest& o) {
   command.add_option("--solvers", o.solvers, "only these, such as admm,cp (default: all)")->delimiter(',');
   command.add_option("--bases", o.bases, "only these, such as dct,tv (default: all)")->delimiter(',');
   command.add_option("--constraint", o.constraint, "none, nonnegative or box (default: the board's)");
@@ -52,7 +52,7 @@ std::string footer() {
 }  // namespace
 
 void add_compare_command(CLI::App& app, Action& chosen) {
-  auto options = std::make_shared<CompareOptions>();
+  auto options = std::make_shared<CompareRequest>();
   CLI::App* command = app.add_subcommand("compare", "every solver and basis on the same samples");
   add_samples(*command, *options);
   add_contenders(*command, *options);
@@ -61,7 +61,7 @@ void add_compare_command(CLI::App& app, Action& chosen) {
   command->add_flag("--json", options->json, "print one object with every figure and nothing else on stdout");
   command->footer(footer());
   command->callback(
-      [options, &chosen] { chosen = [options] { return with_json_failure(options->json, compare(*options)); }; });
+      [options, &chosen] { chosen = [options] { return with_json_failure(options->json, run_compare(*options)); }; });
 }
 
 }  // namespace compueye::firmware

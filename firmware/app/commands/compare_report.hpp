@@ -10,7 +10,5 @@ namespace compueye::firmware {
 /// A table with a line a contender, the conventional eye first, and what to read in it.
 [[nodiscard]] std::string compare_text(const Comparison& comparison);
 [[nodiscard]] Json compare_json(const Comparison& comparison);
-/// A header line and a line a contender; RFC 4180.
-[[nodiscard]] std::string compare_csv(const Comparison& comparison);
 
 }  // namespace compueye::firmware

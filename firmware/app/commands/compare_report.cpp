@@ -1,8 +1,10 @@
-#include "studies/comparison/compare_report.hpp"
+#include "firmware/app/commands/compare_report.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "firmware/text/number_text.hpp"
@@ -57,7 +59,9 @@ std::string foot_text(const Comparison& c) {
       "is\n"
       "above the least among them, the duality gap how far at most above the optimum (that of admm and adm closes\n"
       "late), NMSE, PSNR and SSIM how good the picture is. omp, tikhonov and tsvd have objectives of their own.\n"
-      "ms: median of one frame on one thread, duality gap included.\n";
+      "ms: median of one frame on ";
+  text += c.threads == 1 ? "one thread" : fmt::format("{} threads", c.threads);
+  text += ", duality gap included.\n";
   const bool pixels = std::any_of(c.rows.begin(), c.rows.end(), [](const ComparedRow& row) {
     return row.contender.basis == recon::BasisKind::identity && row.excess;
   });
@@ -73,46 +77,17 @@ std::string foot_text(const Comparison& c) {
   return text;
 }
 
-Json row_json(const ComparedRow& row) {
-  return {{"basis", name(row.contender.basis)},
-          {"constraint", name(row.contender.constraint)},
-          {"solver", name(row.contender.solver)},
-          {"lambda", row.lambda},
-          {"rank", row.rank > 0 ? Json(row.rank) : Json()},
-          {"nmse", row.quality.nmse},
-          {"psnr_db", row.quality.psnr_db},
-          {"ssim", row.quality.ssim},
-          {"objective", row.info.objective},
-          {"excess", row.excess ? Json(*row.excess) : Json()},
-          {"duality_gap", row.info.duality_gap >= 0.0 ? Json(row.info.duality_gap) : Json()},
-          {"residual", row.info.residual},
-          {"iterations", row.info.iterations},
-          {"health", row.info.health == recon::Health::converged ? "converged" : "budget_used"},
-          {"solve_ms", row.solve_ms},
-          {"setup_s", row.setup_s},
-          {"workspace_bytes", row.workspace_bytes},
-          {"table_bytes", row.table_bytes}};
-}
-
-/// A scene may be a file name with a comma in it.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char character : text) out += character == '"' ? std::string("\"\"") : std::string(1, character);
-  return out + '"';
-}
-
-/// The conventional eye as a line with the columns of `like`.
-template <class Line>
-std::string conventional_line(const Comparison& c, const Json& like, Line&& line) {
-  if (!c.conventional_quality) return {};
-  Json row;
-  for (const auto& [key, value] : like.items()) row[key] = Json();
-  row["solver"] = "conventional eye";
-  row["nmse"] = c.conventional_quality->nmse;
-  row["psnr_db"] = c.conventional_quality->psnr_db;
-  row["ssim"] = c.conventional_quality->ssim;
-  return line(row, false);
+Json json_of(const ComparedRow& row) {
+  Json json = Json::object();
+  for (const ComparedFigure& figure : figures_of(row)) {
+    Json& member = json[std::string(figure.key)];
+    std::visit(
+        [&member](const auto& value) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, std::monostate>) member = value;
+        },
+        figure.value);
+  }
+  return json;
 }
 
 }  // namespace
@@ -151,7 +126,7 @@ Json compare_json(const Comparison& c) {
             {"seeing_channels", c.seeing},
             {"rows", c.truth.rows},
             {"cols", c.truth.cols},
-            {"threads", 1},
+            {"threads", c.threads},
             {"planned", c.planned},
             {"complete", c.rows.size() == c.planned}};
   json["conventional"] = Json();
@@ -160,30 +135,10 @@ Json compare_json(const Comparison& c) {
     json["conventional"] = {{"nmse", q.nmse}, {"psnr_db", q.psnr_db}, {"ssim", q.ssim}};
   }
   json["compared"] = Json::array();
-  for (const ComparedRow& row : c.rows) json["compared"].push_back(row_json(row));
+  for (const ComparedRow& row : c.rows) json["compared"].push_back(json_of(row));
   json["missing"] = c.missing;
   json["notes"] = c.notes;
   return json;
-}
-
-std::string compare_csv(const Comparison& c) {
-  const auto line = [&](const Json& row, bool keys) {
-    std::string text = keys ? "board,scene,scene_seed,seed,samples"
-                            : fmt::format("{},{},{},{},{}", quoted(c.board), quoted(c.scene), c.scene_seed, c.seed,
-                                          c.exact ? "exact" : "simulated eye");
-    for (const auto& [key, value] : row.items()) {
-      const std::string cell = value.is_string() ? value.get<std::string>() : value.dump();
-      text += ',' + (keys ? key : (value.is_null() ? std::string() : cell));
-    }
-    return text + "\r\n";
-  };
-  std::string text;
-  for (const ComparedRow& row : c.rows) {
-    const Json json = row_json(row);
-    if (text.empty()) text = line(json, true) + conventional_line(c, json, line);
-    text += line(json, false);
-  }
-  return text;
 }
 
 }  // namespace compueye::firmware

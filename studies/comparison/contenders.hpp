@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,27 +10,20 @@
 
 namespace compueye::firmware {
 
-/// What `compueye compare` was asked for.
+/// What is compared, and on which samples of a board's eye.
 struct CompareOptions {
-  std::filesystem::path board;
   std::string scene;  ///< empty: the board's
   std::int64_t scene_seed = 0;
-  std::int64_t seed = 0;
-  bool exact = false;              ///< y = A x + n instead of the simulated eye
-  std::filesystem::path response;  ///< empty: the nominal one
-  std::optional<double> sigma;
-  std::optional<double> lambda;
-  std::optional<std::int64_t> iterations;
-  std::optional<std::int64_t> threads;
-  std::vector<std::string> solvers;  ///< empty: all
-  std::vector<std::string> bases;    ///< empty: all
-  std::string constraint;            ///< empty: the board's
-  std::filesystem::path sheet;
-  std::filesystem::path csv;
-  bool json = false;
-
-  /// Error usage, naming option and value.
-  [[nodiscard]] hal::Result<void> check() const;
+  std::int64_t seed = 0;                   ///< of the noise
+  bool exact = false;                      ///< y = A x + n instead of the simulated eye
+  std::string response;                    ///< file of another A for the board's eye; empty: the nominal one
+  std::optional<double> sigma;             ///< of one sample, in white pixels, >= 0; absent: the board's
+  std::optional<double> lambda;            ///< >= 0, for every contender; absent: by rule
+  std::optional<std::int64_t> iterations;  ///< 1 .. 1e6, of every contender; absent: see compare()
+  std::optional<std::int64_t> threads;     ///< 1 .. recon::WorkerThreads::most; absent: the board's
+  std::vector<std::string> solvers;        ///< empty: all
+  std::vector<std::string> bases;          ///< empty: all
+  std::string constraint;                  ///< empty: the board's
 };
 
 /// A solver with a basis and constraint it takes.

@@ -6,10 +6,9 @@
 #include "firmware/eye/board.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
-#include "recon/core/parts/frame_info.hpp"
 #include "recon/response.hpp"
 #include "recon/setup/factor.hpp"
-#include "studies/comparison/compare_options.hpp"
+#include "studies/comparison/contenders.hpp"
 
 namespace compueye::firmware {
 
@@ -26,7 +25,7 @@ struct CompareSamples {
 
 /// Errors: those of the scene, the response file (and mismatch when it is another eye's), the nominal response and the
 /// simulated eye; interrupted.
-[[nodiscard]] hal::Result<CompareSamples> take_compare_samples(const Board& board, const CompareOptions& options,
-                                                               const recon::Progress& progress);
+[[nodiscard]] hal::Result<CompareSamples> take_samples(const Board& board, const CompareOptions& options,
+                                                       const recon::Progress& progress);
 
 }  // namespace compueye::firmware

@@ -1,0 +1,84 @@
+#include "studies/comparison/samples.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <span>
+#include <utility>
+
+#include "calib/nominal.hpp"
+#include "firmware/eye/conventional_eye.hpp"
+#include "firmware/eye/dead_ommatidia.hpp"
+#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/simulated_board.hpp"
+#include "firmware/files/response_file.hpp"
+#include "firmware/operating_points/trial.hpp"
+#include "hal/clock.hpp"
+#include "hal/try.hpp"
+#include "sim/random.hpp"
+#include "sim/scene_truth.hpp"
+#include "sim/simulated_eye.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::ErrorCode;
+using hal::Result;
+
+Result<recon::Response> response_of(const Board& board, const CompareOptions& o, const recon::Progress& progress) {
+  recon::Response response =
+      TRY(o.response.empty() ? calib::nominal_response(board.eye, board.object, progress) : read_response(o.response));
+  if (response.rows() == board.eye.ommatidia() && response.cols() == board.object.pixels()) return response;
+  return hal::fail(
+      ErrorCode::mismatch, o.response,
+      fmt::format("has {} rows and {} columns, expected {} and {}, the ommatidia and pixels of {}", response.rows(),
+                  response.cols(), board.eye.ommatidia(), board.object.pixels(), board.name));
+}
+
+/// y = A x + n on the truth's own pixels.
+void take_exact(std::uint64_t seed, CompareSamples& samples) {
+  const std::vector<double> x(samples.truth.pixels.begin(), samples.truth.pixels.end());
+  std::vector<double> y(static_cast<std::size_t>(samples.response.rows()));
+  samples.response.forward(x, y);
+  for (std::size_t m = 0; m < y.size(); ++m) {
+    sim::RandomStream stream({seed, sim::Effect::read_noise, 0, static_cast<std::uint32_t>(m)});
+    samples.y.push_back(static_cast<float>(y[m] + samples.sigma * stream.gaussian()));
+  }
+  samples.weights.assign(samples.y.size(), 1.0F);
+}
+
+/// `sees` as in CorrectionSettings: by the geometry, dead ommatidia included.
+Result<void> take_from_eye(const Board& board, const sim::Scene& scene, std::uint64_t seed,
+                           std::span<const std::uint8_t> sees, CompareSamples& samples) {
+  hal::VirtualClock clock;
+  const auto eye = TRY(sim::SimulatedEye::create(simulated_eye_settings(board, scene, seed), clock));
+  const std::atomic<bool> never{false};
+  TrialFrame frame = TRY(take_trial_frame(board, correction_settings(board, sees), *eye, clock, never));
+  samples.y = std::move(frame.y);
+  samples.weights = std::move(frame.weights);
+  return {};
+}
+
+}  // namespace
+
+Result<CompareSamples> take_samples(const Board& board, const CompareOptions& o, const recon::Progress& progress) {
+  const sim::Scene scene = TRY(choose_scene(board, {o.scene, static_cast<std::uint64_t>(o.scene_seed), std::nullopt}));
+  hal::Image truth = TRY(sim::scene_truth(scene, board.object));
+  recon::Response response = TRY(response_of(board, o, progress));
+  std::vector<std::uint8_t> sees(static_cast<std::size_t>(board.eye.ommatidia()), 0);
+  for (const std::int32_t m : response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
+  if (!board.sensor.dead.empty()) response = without_dead(response, board.sensor.dead);
+  CompareSamples samples{
+      scene.name, std::move(truth), std::move(response), o.sigma.value_or(board.noise_sigma()), {}, {}, {}};
+  const auto seed = static_cast<std::uint64_t>(o.seed);
+  if (o.exact) {
+    take_exact(seed, samples);
+  } else {
+    TRY(take_from_eye(board, scene, seed, sees, samples));
+  }
+  // A lattice without an interommatidial angle has no conventional eye; the comparison goes on without it.
+  if (auto conventional = conventional_picture(board, scene, seed)) samples.conventional = std::move(*conventional);
+  return samples;
+}
+
+}  // namespace compueye::firmware
