@@ -13,15 +13,10 @@ namespace {
 using hal::ErrorCode;
 using hal::fail;
 using hal::Result;
-
-Result<void> check(bool ok, std::string_view field, double value, std::string_view expected) {
-  if (ok) return {};
-  return fail(ErrorCode::out_of_range, std::string(field),
-              "is " + std::to_string(value) + ", expected " + std::string(expected));
-}
+using hal::SensorSettings;
 
 void add_dark_level(const SensorSettings& settings, SensorFrame& frame) noexcept {
-  for (double& level : frame.levels_lsb) level += settings.dark_lsb;
+  for (double& level : frame.levels_lsb) level += settings.dark_level_lsb;
 }
 
 void add_read_noise(const SensorSettings& settings, SensorFrame& frame) noexcept {
@@ -33,25 +28,6 @@ void add_read_noise(const SensorSettings& settings, SensorFrame& frame) noexcept
 }
 
 }  // namespace
-
-double SensorSettings::lsb() const noexcept {
-  return full_scale / std::ldexp(1.0, bits);
-}
-
-Result<void> SensorSettings::validate() const {
-  return check(bits >= 1 && bits <= 24, "sensor.bits", bits, "1 to 24")
-      .and_then([&] {
-        return check(std::isfinite(full_scale) && full_scale > 0.0, "sensor.full_scale", full_scale, "more than 0");
-      })
-      .and_then([&] {
-        return check(dark_lsb >= 0.0 && dark_lsb < std::ldexp(1.0, bits), "sensor.dark_lsb", dark_lsb,
-                     "0 or more and below 2^bits");
-      })
-      .and_then([&] {
-        return check(std::isfinite(read_noise_lsb) && read_noise_lsb >= 0.0, "sensor.read_noise_lsb", read_noise_lsb,
-                     "0 or more");
-      });
-}
 
 Sensor::Sensor(const SensorSettings& settings)
     : settings_(settings), steps_{{"dark level", true, add_dark_level}, {"read noise", true, add_read_noise}} {}

@@ -6,22 +6,9 @@
 #include <vector>
 
 #include "hal/result.hpp"
+#include "hal/sensor_settings.hpp"
 
 namespace compueye::sim {
-
-/// The photodiodes and their converter.
-struct SensorSettings {
-  int bits = 16;                ///< 1 .. 24
-  double full_scale = 4096.0;   ///< signal (in fully seen pixels at white) of 2^bits LSB above zero, > 0
-  double dark_lsb = 0.0;        ///< pedestal that every channel reads without light, >= 0 and below 2^bits
-  double read_noise_lsb = 0.0;  ///< standard deviation of a Gaussian, a draw for each channel and frame, >= 0
-
-  /// The signal that one code step stands for: full_scale / 2^bits.
-  [[nodiscard]] double lsb() const noexcept;
-  [[nodiscard]] std::int32_t largest_code() const noexcept { return (std::int32_t{1} << bits) - 1; }
-  /// Error out_of_range names the field, its value and its range.
-  [[nodiscard]] hal::Result<void> validate() const;
-};
 
 /// One frame on its way through the sensor.
 struct SensorFrame {
@@ -35,7 +22,7 @@ struct SensorFrame {
 struct SensorStep {
   std::string_view name;
   bool enabled = true;
-  void (*apply)(const SensorSettings& settings, SensorFrame& frame) noexcept = nullptr;
+  void (*apply)(const hal::SensorSettings& settings, SensorFrame& frame) noexcept = nullptr;
 };
 
 /// From noise-free signals to codes: the enabled steps in order, then the converter, which always rounds and clips:
@@ -43,9 +30,9 @@ struct SensorStep {
 class Sensor {
  public:
   /// Steps in order: "dark level", "read noise". Errors: those of settings.validate().
-  [[nodiscard]] static hal::Result<Sensor> create(const SensorSettings& settings);
+  [[nodiscard]] static hal::Result<Sensor> create(const hal::SensorSettings& settings);
 
-  [[nodiscard]] const SensorSettings& settings() const noexcept { return settings_; }
+  [[nodiscard]] const hal::SensorSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] std::span<const SensorStep> steps() const noexcept { return steps_; }
   /// Error not_found lists the known steps.
   [[nodiscard]] hal::Result<void> enable(std::string_view step, bool enabled);
@@ -56,9 +43,9 @@ class Sensor {
                               std::span<double> levels_lsb, std::span<std::int32_t> codes) const noexcept;
 
  private:
-  explicit Sensor(const SensorSettings& settings);
+  explicit Sensor(const hal::SensorSettings& settings);
 
-  SensorSettings settings_;
+  hal::SensorSettings settings_;
   std::vector<SensorStep> steps_;
 };
 

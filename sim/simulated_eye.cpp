@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "hal/try.hpp"
+
 namespace compueye::sim {
 namespace {
 
@@ -24,13 +26,11 @@ Result<void> check(bool ok, const std::string& serial, std::string_view field, d
 
 Result<void> check(const SimulatedEyeSettings& s) {
   if (s.scenes.empty()) return fail(ErrorCode::usage, s.serial, "there is no scene, expected at least one");
-  return check(s.frames_per_scene >= 1, s.serial, "frames_per_scene", s.frames_per_scene, "1 or more")
-      .and_then([&] { return check(s.fifo_frames >= 1, s.serial, "fifo_frames", s.fifo_frames, "1 or more"); })
-      .and_then([&] {
-        return check(s.frame_rate_hz == 0.0 || (s.frame_rate_hz >= 1e-3 && s.frame_rate_hz <= 1e6), s.serial,
-                     "frame_rate_hz", s.frame_rate_hz, "0 (unpaced) or 0.001 to 1000000");
-      })
-      .and_then([&] { return s.faults.validate(s.optics.eye.ommatidia()); });
+  TRY(check(s.frames_per_scene >= 1, s.serial, "frames_per_scene", s.frames_per_scene, "1 or more"));
+  TRY(check(s.fifo_frames >= 1, s.serial, "fifo_frames", s.fifo_frames, "1 or more"));
+  TRY(check(s.frame_rate_hz == 0.0 || (s.frame_rate_hz >= 1e-3 && s.frame_rate_hz <= 1e6), s.serial, "frame_rate_hz",
+            s.frame_rate_hz, "0 (unpaced) or 0.001 to 1000000"));
+  return s.faults.validate(s.optics.eye.ommatidia());
 }
 
 }  // namespace
@@ -39,22 +39,16 @@ Result<std::unique_ptr<SimulatedEye>> SimulatedEye::create(SimulatedEyeSettings 
   if (settings.optics.profile.shells.empty()) {
     settings.optics.profile = AngularProfile::flat_top(settings.optics.eye.acceptance_rad);
   }
-  if (auto ok = settings.optics.validate(); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check(settings); !ok) return tl::unexpected(ok.error());
-  Result<Sensor> sensor = Sensor::create(settings.sensor);
-  if (!sensor) return tl::unexpected(sensor.error());
-  for (const std::string& step : settings.steps_off) {
-    if (auto ok = sensor->enable(step, false); !ok) return tl::unexpected(ok.error());
-  }
+  TRY(settings.optics.validate());
+  for (const int channel : settings.sensor.dead) settings.faults.invalid_channels.push_back({channel, 0});
+  TRY(check(settings));
+  Sensor sensor = TRY(Sensor::create(settings.sensor));
+  for (const std::string& step : settings.steps_off) TRY(sensor.enable(step, false));
   std::vector<std::vector<double>> signals;
-  for (const Scene& scene : settings.scenes) {
-    Result<std::vector<double>> exposed = settings.optics.expose(scene);
-    if (!exposed) return tl::unexpected(exposed.error());
-    signals.push_back(*std::move(exposed));
-  }
+  for (const Scene& scene : settings.scenes) signals.push_back(TRY(settings.optics.expose(scene)));
   std::sort(settings.faults.lost_frames.begin(), settings.faults.lost_frames.end());
   return std::unique_ptr<SimulatedEye>(
-      new SimulatedEye(std::move(settings), *std::move(sensor), std::move(signals), clock));
+      new SimulatedEye(std::move(settings), std::move(sensor), std::move(signals), clock));
 }
 
 SimulatedEye::SimulatedEye(SimulatedEyeSettings settings, Sensor sensor, std::vector<std::vector<double>> signals,

@@ -10,6 +10,7 @@
 #include "hal/clock.hpp"
 #include "hal/eye_geometry.hpp"
 #include "hal/sample_source.hpp"
+#include "hal/sensor_settings.hpp"
 #include "sim/device_faults.hpp"
 #include "sim/optics.hpp"
 #include "sim/scene.hpp"
@@ -21,7 +22,7 @@ struct SimulatedEyeSettings {
   Optics optics;                             ///< an empty profile becomes the flat top of eye.acceptance_rad
   std::vector<Scene> scenes;                 ///< at least one; shown in turn, over and over
   int frames_per_scene = 1;                  ///< >= 1
-  SensorSettings sensor;                     ///< bits, full scale, noise
+  hal::SensorSettings sensor;                ///< its dead channels are invalid in every frame
   std::vector<std::string> steps_off;        ///< names of sensor steps to switch off
   double frame_rate_hz = 0.0;                ///< 0: unpaced, a frame whenever one is read; else up to 1e6
   std::uint64_t seed = 0;                    ///< of every random draw

@@ -11,12 +11,12 @@ sim::SimulatedEyeSettings simulated_eye_settings(const Board& board, sim::Scene 
   settings.scenes.push_back(std::move(scene));
   settings.sensor = {.bits = board.sensor.bits,
                      .full_scale = board.sensor.full_scale,
-                     .dark_lsb = board.sensor.dark_level_lsb,
-                     .read_noise_lsb = board.sensor.read_noise_lsb};
+                     .read_noise_lsb = board.sensor.read_noise_lsb,
+                     .dark_level_lsb = board.sensor.dark_level_lsb,
+                     .dead = board.sensor.dead};
   settings.seed = seed;
   settings.fifo_frames = board.source.fifo_frames;
   settings.serial = board.source.serial;
-  for (const int channel : board.sensor.dead) settings.faults.invalid_channels.push_back({channel, 0});
   return settings;
 }
 

@@ -23,7 +23,7 @@ sim::SimulatedEyeSettings small_eye() {
   settings.optics.eye.acceptance_rad = 0.14;
   settings.scenes.push_back(
       sim::scene_on(settings.optics.object, "dots", sim::render_built_in("dots", 16, 16, 1).value()));
-  settings.sensor = {.bits = 12, .full_scale = 64.0, .dark_lsb = 20.0, .read_noise_lsb = 2.0};
+  settings.sensor = {.bits = 12, .full_scale = 64.0, .read_noise_lsb = 2.0, .dark_level_lsb = 20.0};
   settings.frame_rate_hz = rate_hz;
   return settings;
 }

@@ -8,8 +8,8 @@
 #include <vector>
 
 using namespace compueye;
+using hal::SensorSettings;
 using sim::Sensor;
-using sim::SensorSettings;
 
 namespace {
 
@@ -32,7 +32,7 @@ TEST_CASE("without noise a code is the rounded level on the pedestal") {
   SensorSettings settings;
   settings.bits = 10;
   settings.full_scale = 256.0;  // one LSB is a quarter
-  settings.dark_lsb = 20.0;
+  settings.dark_level_lsb = 20.0;
   CHECK(settings.lsb() == 0.25);
   const Sensor sensor = Sensor::create(settings).value();
   const Frame frame = digitise(sensor, {0.0, 0.1, 0.13, 0.25, 1.0, 100.0, 250.0});
@@ -58,7 +58,7 @@ TEST_CASE("levels beyond the converter are clipped and full scale is flagged") {
 
 TEST_CASE("read noise has the stated mean and standard deviation and is white over channels and frames") {
   SensorSettings settings;
-  settings.dark_lsb = 1000.0;
+  settings.dark_level_lsb = 1000.0;
   settings.read_noise_lsb = 5.06;
   const Sensor sensor = Sensor::create(settings).value();
   constexpr int channels = 500, frames = 200, n = channels * frames;
@@ -85,7 +85,7 @@ TEST_CASE("read noise has the stated mean and standard deviation and is white ov
 
 TEST_CASE("the same seed and frame give the same codes, another does not") {
   SensorSettings settings;
-  settings.dark_lsb = 100.0;
+  settings.dark_level_lsb = 100.0;
   settings.read_noise_lsb = 5.0;
   const Sensor sensor = Sensor::create(settings).value();
   const std::vector<double> signals(64, 2.0);
@@ -96,7 +96,7 @@ TEST_CASE("the same seed and frame give the same codes, another does not") {
 
 TEST_CASE("steps can be switched off one by one without touching the others") {
   SensorSettings settings;
-  settings.dark_lsb = 100.0;
+  settings.dark_level_lsb = 100.0;
   settings.read_noise_lsb = 5.0;
   const std::vector<double> signals(64, 200.0);
   const Sensor both = Sensor::create(settings).value();
@@ -126,8 +126,8 @@ TEST_CASE("sensor settings out of range are refused by name") {
   CHECK(place([](SensorSettings& s) { s.bits = 25; }) == "sensor.bits");
   CHECK(place([](SensorSettings& s) { s.full_scale = 0.0; }) == "sensor.full_scale");
   CHECK(place([](SensorSettings& s) { s.full_scale = nan; }) == "sensor.full_scale");
-  CHECK(place([](SensorSettings& s) { s.dark_lsb = -1.0; }) == "sensor.dark_lsb");
-  CHECK(place([](SensorSettings& s) { s.dark_lsb = 65536.0; }) == "sensor.dark_lsb");
+  CHECK(place([](SensorSettings& s) { s.dark_level_lsb = -1.0; }) == "sensor.dark_level_lsb");
+  CHECK(place([](SensorSettings& s) { s.dark_level_lsb = 65536.0; }) == "sensor.dark_level_lsb");
   CHECK(place([](SensorSettings& s) { s.read_noise_lsb = -0.1; }) == "sensor.read_noise_lsb");
   CHECK(place([](SensorSettings& s) { s.read_noise_lsb = nan; }) == "sensor.read_noise_lsb");
 }
