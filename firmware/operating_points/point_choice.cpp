@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "firmware/operating_points/deadline_choice.hpp"
 #include "firmware/text/number_text.hpp"
-#include "studies/accuracy_and_time/efficient_front.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -48,30 +46,23 @@ bool frames_look_alike(const MeasuredPoint& a, const MeasuredPoint& b) {
 }  // namespace
 
 PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, double period_ms) {
-  constexpr double least_gain = 0.01;
   PointChoice choice;
   choice.deadline_ms = deadline_ms;
   choice.level = nearest_level(sweep, sigma);
-  std::vector<CostAndError> points;
-  for (const MeasuredPoint& point : sweep.points) {
-    // What a still scene makes of a warm start is more than a run can count on.
-    const bool counts = point.curve.motion != Motion::still;
-    const double nmse = point.levels[choice.level].quality.mean.nmse;
-    points.push_back({point.p999_ms, counts ? nmse : std::numeric_limits<double>::quiet_NaN()});
-  }
-  std::vector<std::size_t> front = efficient_front(points, least_gain);
+  const auto cost = [&](std::size_t i) { return sweep.points[i].p999_ms; };
+  std::vector<std::size_t> front = efficient_points(sweep, choice.level, &MeasuredPoint::p999_ms);
   if (front.empty()) front.push_back(0);  // nothing but still scenes was measured
   std::size_t chosen = 0;
   for (std::size_t f = 0; f < front.size(); ++f) {
-    if (predicted_age_ms(points[front[f]].cost, period_ms) > deadline_share * deadline_ms) continue;
+    if (predicted_age_ms(cost(front[f]), period_ms) > deadline_share * deadline_ms) continue;
     chosen = f;
     choice.fits = true;
   }
   choice.ladder.push_back(front[chosen]);
-  choice.age_ms = predicted_age_ms(points[front[chosen]].cost, period_ms);
+  choice.age_ms = predicted_age_ms(cost(front[chosen]), period_ms);
   const std::uint64_t alone = memory_of(sweep, choice.ladder);
   for (std::size_t f = chosen; f-- > 0 && choice.ladder.size() < most_rungs;) {
-    if (points[front[f]].cost * rung_speed_up > points[choice.ladder.back()].cost) continue;
+    if (cost(front[f]) * rung_speed_up > cost(choice.ladder.back())) continue;
     const bool told_apart = std::none_of(choice.ladder.begin(), choice.ladder.end(), [&](std::size_t other) {
       return frames_look_alike(sweep.points[front[f]], sweep.points[other]);
     });

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/accuracy_and_time/sweep.hpp"
+#include "firmware/operating_points/measured_points.hpp"
 
 namespace compueye::firmware {
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "studies/accuracy_and_time/curve_eyes.hpp"
-
 namespace compueye::firmware {
 
 hal::Result<PointLadder> make_ladder(const Board& board, const LivingResponse& living, const Sweep& sweep,

@@ -3,8 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "firmware/operating_points/measured_points.hpp"
 #include "hal/result.hpp"
-#include "studies/accuracy_and_time/sweep.hpp"
+#include "recon/response.hpp"
 
 namespace compueye::firmware {
 

@@ -131,6 +131,8 @@ Sweep read(const Json& json) {
   sweep.image_rows = json.at("rows").get<int>();
   sweep.image_cols = json.at("cols").get<int>();
   sweep.scenes = json.at("scenes").get<std::vector<std::string>>();
+  sweep.first_scene_seed = json.at("first_scene_seed").get<std::uint64_t>();
+  sweep.pictures_a_level = json.at("pictures_a_level").get<std::size_t>();
   for (const Json& level : json.at("levels")) {
     sweep.levels.push_back({level.at("times_board_noise").get<double>(), level.at("sigma").get<double>()});
   }
@@ -160,8 +162,8 @@ Json sweep_json(const Sweep& sweep) {
             {"rows", sweep.image_rows},
             {"cols", sweep.image_cols},
             {"scenes", sweep.scenes},
-            {"first_scene_seed", first_evaluation_seed},
-            {"pictures_a_level", evaluation_scenes},
+            {"first_scene_seed", sweep.first_scene_seed},
+            {"pictures_a_level", sweep.pictures_a_level},
             {"processor_share", sweep.processor_share},
             {"complete", sweep.cut_short.empty()},
             {"cut_short", sweep.cut_short},

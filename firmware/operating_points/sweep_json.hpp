@@ -3,7 +3,7 @@
 #include <string>
 
 #include "firmware/app/report/json_report.hpp"
-#include "studies/accuracy_and_time/sweep.hpp"
+#include "firmware/operating_points/measured_points.hpp"
 
 namespace compueye::firmware {
 

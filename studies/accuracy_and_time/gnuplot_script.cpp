@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <limits>
+#include <string_view>
+#include <utility>
 
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/visible_text.hpp"
-#include "studies/accuracy_and_time/plot_curves.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -76,7 +77,7 @@ std::string axes_of(const Sweep& s, std::size_t level) {
 std::string head_of(const Sweep& s, std::size_t level) {
   const std::string first = fmt::format("{}: what accuracy costs in time", s.board);
   const std::string second =
-      fmt::format("{} scenes ({}), noise {} white pixels = {:g} x the board's", evaluation_scenes,
+      fmt::format("{} scenes ({}), noise {} white pixels = {:g} x the board's", s.pictures_a_level,
                   fmt::join(s.scenes, ", "), significant(s.levels[level].sigma, 3), s.levels[level].times);
   const std::string third = fmt::format("{}, one core where no threads are named", s.machine.cpu);
   return fmt::format("set title {}.\"\\n\".{}.\"\\n\".{} noenhanced\n", quoted(first), quoted(second), quoted(third)) +
@@ -109,7 +110,55 @@ std::string plots_of(const Sweep& s, std::size_t level, const std::vector<PlotCu
   return text + "\n";
 }
 
+struct Ranked {
+  PlotCurve curve;
+  std::size_t efficient = 0;
+  double distance = std::numeric_limits<double>::infinity();  ///< least, in decades of time and NMSE together
+};
+
+double nmse_of(const Sweep& sweep, std::size_t i, std::size_t level) {
+  return sweep.points[i].levels[level].quality.mean.nmse;
+}
+
+/// How far a point is from the nearest efficient one that outdoes it.
+double distance_of(const Sweep& sweep, std::size_t i, const std::vector<std::size_t>& front, std::size_t level) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t f : front) {
+    const double time = std::log10(sweep.points[i].median_ms / sweep.points[f].median_ms);
+    const double error = std::log10(nmse_of(sweep, i, level) / nmse_of(sweep, f, level));
+    const double distance = std::hypot(time, error);
+    if (distance < least) least = distance;
+  }
+  return least;
+}
+
 }  // namespace
+
+std::vector<PlotCurve> plot_curves(const Sweep& sweep, std::size_t level) {
+  const std::vector<std::size_t> front = efficient_points(sweep, level);
+  std::vector<Ranked> ranked;
+  std::vector<Curve> kinds;
+  for (std::size_t i = 0; i < sweep.points.size(); ++i) {
+    const Curve& kind = sweep.points[i].curve;
+    const auto at = static_cast<std::size_t>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+    if (at == kinds.size()) {
+      kinds.push_back(kind);
+      ranked.push_back({{title(kind), {}, false}});
+    }
+    ranked[at].curve.points.push_back(i);
+    if (std::find(front.begin(), front.end(), i) != front.end()) ++ranked[at].efficient;
+    ranked[at].distance = std::min(ranked[at].distance, distance_of(sweep, i, front, level));
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
+    return a.efficient != b.efficient ? a.efficient > b.efficient : a.distance < b.distance;
+  });
+  std::vector<PlotCurve> curves;
+  for (Ranked& one : ranked) {
+    one.curve.named = curves.size() < most_named_curves;
+    curves.push_back(std::move(one.curve));
+  }
+  return curves;
+}
 
 std::string gnuplot_script(const Sweep& sweep, std::size_t level, const std::string& stem) {
   const std::vector<PlotCurve> curves = plot_curves(sweep, level);

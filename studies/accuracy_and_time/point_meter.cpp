@@ -2,9 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <ctime>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "firmware/pipeline/reconstructor_solver.hpp"
+#include "hal/try.hpp"
+#include "recon/lambda_rule.hpp"
+#include "recon/setup/quantised_response.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -15,7 +23,62 @@ tl::unexpected<hal::Error> stopped() {
   return hal::fail(ErrorCode::interrupted, "pareto", "stopped within a point");
 }
 
+/// Processor time of this process so far, all threads together.
+std::int64_t process_cpu_ns() noexcept {
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<std::int64_t>(now.tv_sec) * second_ns + now.tv_nsec;
+}
+
 }  // namespace
+
+hal::Result<CurveEyes> set_up_curve(const Board& board, const LivingResponse& living, const Curve& curve,
+                                    const std::vector<NoiseLevel>& levels, const recon::Progress& progress) {
+  CurveEyes eyes;
+  const Board curved = with_curve(board, curve);
+  std::optional<recon::Response> rounded;
+  if (curve.op && recon::is_lossy(*curve.op)) rounded = recon::quantised(living.response, *curve.op);
+  const recon::Response& a = rounded ? *rounded : living.response;
+  // tikhonov's factor goes with its lambda: nothing to share, nothing worth keeping.
+  const bool shares = curve.solver != recon::SolverKind::tikhonov;
+  for (const NoiseLevel& level : levels) {
+    if (eyes.by_level.empty() || !shares) {
+      EyeRequest request{std::nullopt, std::nullopt, level.sigma, std::nullopt, {}, curve.precision};
+      if (shares) request.cache = board.folder / ".cache";
+      ReadyEye eye = TRY(ReadyEye::make(curved, living, request, progress));
+      eyes.lambda.push_back(eye.lambda().value);
+      eyes.notes.insert(eyes.notes.end(), eye.notes().begin(), eye.notes().end());
+      eyes.by_level.push_back(std::move(eye).take_reconstructor());
+      continue;
+    }
+    const recon::Reconstructor& first = eyes.by_level.front();
+    recon::Objective objective = first.objective();
+    objective.lambda =
+        TRY(recon::lambda_by_rule(a, board.object.rows, board.object.cols, curve.solver, curve.basis, level.sigma));
+    recon::Plan plan = first.plan();
+    // What followed from lambda follows from this one.
+    plan.rho = curved.reconstruction.rho.value_or(0.0);
+    if (curve.solver == recon::SolverKind::tsvd) plan.rank = 0;
+    // In double a factor is made anew every time: what is kept is in float32.
+    std::optional<recon::Factor> factor;
+    if (recon::uses_factor(curve.solver) && curve.precision == recon::Precision::f32) factor = first.factor();
+    eyes.lambda.push_back(objective.lambda);
+    eyes.by_level.push_back(TRY(recon::Reconstructor::create(a, first.image_rows(), first.image_cols(), objective, plan,
+                                                             std::move(factor), progress)));
+  }
+  return eyes;
+}
+
+double FrameTimes::percentile_ms(std::uint64_t per_mille) const {
+  if (ns_.empty()) return std::numeric_limits<double>::quiet_NaN();
+  constexpr std::uint64_t whole = 1000;
+  const std::uint64_t rank = std::clamp<std::uint64_t>((ns_.size() * per_mille + whole - 1) / whole, 1, ns_.size());
+  std::vector<std::int64_t> sorted = ns_;
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return static_cast<double>(*at) * 1e-6;
+}
 
 hal::Result<MeasuredPoint> PointMeter::judge(const Curve& curve, CurveEyes& eyes, int iterations) const {
   MeasuredPoint point;
@@ -24,7 +87,7 @@ hal::Result<MeasuredPoint> PointMeter::judge(const Curve& curve, CurveEyes& eyes
   std::vector<PictureQuality> all;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     recon::Reconstructor& reconstructor = eyes.by_level[l];
-    if (auto set = reconstructor.set_iterations(iterations); !set) return tl::unexpected(std::move(set.error()));
+    TRY(reconstructor.set_iterations(iterations));
     hal::Image picture(reconstructor.image_rows(), reconstructor.image_cols());
     std::vector<PictureQuality> pictures;
     double objective = 0.0;
@@ -42,9 +105,7 @@ hal::Result<MeasuredPoint> PointMeter::judge(const Curve& curve, CurveEyes& eyes
                                      scenes_[s].name, iterations));
       }
       objective += info.objective;
-      auto quality = quality_of(picture, scenes_[s].truth);
-      if (!quality) return tl::unexpected(std::move(quality.error()));
-      pictures.push_back(*quality);
+      pictures.push_back(TRY(quality_of(picture, scenes_[s].truth)));
     }
     all.insert(all.end(), pictures.begin(), pictures.end());
     point.levels.push_back({levels_[l].times, levels_[l].sigma, eyes.lambda[l], summarise(pictures)});

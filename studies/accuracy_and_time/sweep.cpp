@@ -10,10 +10,9 @@
 #include <utility>
 
 #include "firmware/text/number_text.hpp"
-#include "studies/accuracy_and_time/conventional_figures.hpp"
-#include "studies/accuracy_and_time/curve_eyes.hpp"
-#include "studies/accuracy_and_time/efficient_front.hpp"
+#include "hal/try.hpp"
 #include "studies/accuracy_and_time/point_meter.hpp"
+#include "studies/accuracy_and_time/scenes.hpp"
 #include "studies/accuracy_and_time/sweep_limits.hpp"
 
 namespace compueye::firmware {
@@ -22,7 +21,6 @@ namespace {
 using hal::Result;
 
 constexpr double share_for_all = 0.7;  // of the budget; the efficient points' many frames get the rest
-constexpr double least_gain = 0.01;    // of the NMSE: what a slower point must be better by to count as efficient
 constexpr double settled = 0.005;      // of the NMSE: a step that gains less gains nothing
 constexpr std::size_t most_timed = 1000;
 constexpr std::size_t many_timed = 2000, quick_timed = 1000;
@@ -53,7 +51,7 @@ double work_of(const std::vector<int>& iterations) {
 /// Goes through the table, curve by curve.
 class Sweeper {
  public:
-  Sweeper(const Board& board, const ParetoOptions& options, const LivingResponse& living, const hal::Clock& clock,
+  Sweeper(const Board& board, const SweepOptions& options, const LivingResponse& living, const hal::Clock& clock,
           const recon::Progress& progress, Sweep& sweep)
       : board_(board),
         options_(options),
@@ -69,9 +67,7 @@ class Sweeper {
       auto& by_level = frames_[planned.curve.motion];
       for (const NoiseLevel& level : sweep_.levels) {
         if (by_level.size() == sweep_.levels.size()) break;
-        auto frames = take_frames(board_, scenes, living_.sees, level, planned.curve.motion);
-        if (!frames) return tl::unexpected(std::move(frames.error()));
-        by_level.push_back(std::move(*frames));
+        by_level.push_back(TRY(take_frames(board_, scenes, living_.sees, level, planned.curve.motion)));
       }
     }
     return {};
@@ -140,22 +136,20 @@ class Sweeper {
 
   Result<void> measure(const PlannedCurve& planned) {
     const std::size_t first = sweep_.points.size();
-    auto eyes = set_up_curve(board_, living_, planned.curve, sweep_.levels, ask_);
-    if (!eyes) return tl::unexpected(eyes.error());
-    sweep_.notes.insert(sweep_.notes.end(), eyes->notes.begin(), eyes->notes.end());
+    CurveEyes eyes = TRY(set_up_curve(board_, living_, planned.curve, sweep_.levels, ask_));
+    sweep_.notes.insert(sweep_.notes.end(), eyes.notes.begin(), eyes.notes.end());
     for (const int iterations : planned.iterations) {
       if (has_settled(sweep_.points, first)) break;
       if (sweep_.points.size() > first) {
         const MeasuredPoint& last = sweep_.points.back();
         if (last.median_ms * iterations / last.iterations > options_.longest_ms) break;
       }
-      auto point = meter(planned.curve).judge(planned.curve, *eyes, iterations);
-      if (!point) return tl::unexpected(std::move(point.error()));
+      MeasuredPoint point = TRY(meter(planned.curve).judge(planned.curve, eyes, iterations));
       FrameTimes times;
       auto timed = meter(planned.curve)
-                       .time(eyes->by_level.front(), {most_timed, options_.quick ? quick_first_ns : first_ns}, times);
+                       .time(eyes.by_level.front(), {most_timed, options_.quick ? quick_first_ns : first_ns}, times);
       if (times.count() == 0) return timed;
-      sweep_.points.push_back(std::move(*point));
+      sweep_.points.push_back(std::move(point));
       times_.push_back(std::move(times));
       fill_times(sweep_.points.size() - 1);
       limits_.advance(iterations);
@@ -202,7 +196,7 @@ class Sweeper {
   }
 
   const Board& board_;
-  const ParetoOptions& options_;
+  const SweepOptions& options_;
   const LivingResponse& living_;
   const hal::Clock& clock_;
   SweepLimits limits_;
@@ -213,7 +207,7 @@ class Sweeper {
   std::vector<FrameTimes> times_;                                     // by point
 };
 
-Sweep head_of(const Board& board, const ParetoOptions& options, const LivingResponse& living) {
+Sweep head_of(const Board& board, const SweepOptions& options, const LivingResponse& living) {
   Sweep sweep;
   sweep.board = board.name;
   sweep.response_hash = living.response.content_hash();
@@ -226,40 +220,27 @@ Sweep head_of(const Board& board, const ParetoOptions& options, const LivingResp
   sweep.image_rows = board.object.rows;
   sweep.image_cols = board.object.cols;
   sweep.scenes = options.scenes.empty() ? usual_scenes(board) : options.scenes;
+  sweep.first_scene_seed = first_evaluation_seed;
+  sweep.pictures_a_level = evaluation_scenes;
   for (const double times : options.noise) sweep.levels.push_back({times, times * board.noise_sigma()});
   return sweep;
 }
 
 }  // namespace
 
-std::vector<std::size_t> efficient_points(const Sweep& sweep, std::size_t level) {
-  std::vector<CostAndError> points;
-  for (const MeasuredPoint& point : sweep.points) {
-    const QualitySummary& quality = level < point.levels.size() ? point.levels[level].quality : point.overall;
-    const bool counts = point.curve.motion != Motion::still;
-    points.push_back({point.median_ms, counts ? quality.mean.nmse : std::numeric_limits<double>::quiet_NaN()});
-  }
-  return efficient_front(points, least_gain);
-}
-
-Result<Sweep> sweep(const Board& board, const ParetoOptions& options, const hal::Clock& clock,
+Result<Sweep> sweep(const Board& board, const SweepOptions& options, const hal::Clock& clock,
                     const recon::Progress& progress) {
-  const auto living = living_response(board, progress);
-  if (!living) return tl::unexpected(living.error());
-  Sweep result = head_of(board, options, *living);
-  auto plan = plan_sweep(board, options, result.seeing);
-  if (!plan) return tl::unexpected(std::move(plan.error()));
-  result.notes = std::move(plan->notes);
-  const bool moving = std::any_of(plan->curves.begin(), plan->curves.end(),
+  const LivingResponse living = TRY(living_response(board, progress));
+  Sweep result = head_of(board, options, living);
+  SweepPlan plan = TRY(plan_sweep(board, options, result.seeing));
+  result.notes = std::move(plan.notes);
+  const bool moving = std::any_of(plan.curves.begin(), plan.curves.end(),
                                   [](const PlannedCurve& planned) { return planned.curve.motion == Motion::sprite; });
-  const auto scenes = make_evaluation_scenes(board, result.scenes, moving, progress);
-  if (!scenes) return tl::unexpected(scenes.error());
-  auto conventional = conventional_figures(board, *scenes, result.levels, progress);
-  if (!conventional) return tl::unexpected(std::move(conventional.error()));
-  result.conventional = std::move(*conventional);
-  Sweeper sweeper(board, options, *living, clock, progress, result);
-  if (auto taken = sweeper.take(*scenes, *plan); !taken) return tl::unexpected(std::move(taken.error()));
-  if (auto measured = sweeper.measure_all(*plan); !measured) return tl::unexpected(std::move(measured.error()));
+  const auto scenes = TRY(make_evaluation_scenes(board, result.scenes, moving, progress));
+  result.conventional = TRY(conventional_figures(board, scenes, result.levels, progress));
+  Sweeper sweeper(board, options, living, clock, progress, result);
+  TRY(sweeper.take(scenes, plan));
+  TRY(sweeper.measure_all(plan));
   if (result.points.empty()) {
     return hal::fail(hal::ErrorCode::interrupted, board.name, "stopped before the first point was measured");
   }

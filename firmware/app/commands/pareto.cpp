@@ -1,4 +1,4 @@
-#include "studies/accuracy_and_time/pareto.hpp"
+#include "firmware/app/commands/pareto_run.hpp"
 
 #include <memory>
 
@@ -27,8 +27,8 @@ std::string footer() {
 }  // namespace
 
 void add_pareto_command(CLI::App& app, Action& chosen) {
-  auto options = std::make_shared<ParetoOptions>();
-  ParetoOptions& o = *options;
+  auto options = std::make_shared<ParetoRequest>();
+  ParetoRequest& o = *options;
   CLI::App* command = app.add_subcommand("pareto", "accuracy against time of everything a board can be solved with");
   command->add_option("--board", o.board, "folder of the board, such as boards/sim-8x8");
   command->add_option("--out", o.out, "folder for the CSV and the plots; made when missing (default: none)");
@@ -47,7 +47,7 @@ void add_pareto_command(CLI::App& app, Action& chosen) {
   command->add_flag("--json", o.json, "print one object with every figure and nothing else on stdout");
   command->footer(footer());
   command->callback(
-      [options, &chosen] { chosen = [options] { return with_json_failure(options->json, pareto(*options)); }; });
+      [options, &chosen] { chosen = [options] { return with_json_failure(options->json, run_pareto(*options)); }; });
 }
 
 }  // namespace compueye::firmware

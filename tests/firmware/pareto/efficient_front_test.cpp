@@ -1,10 +1,10 @@
-#include "studies/accuracy_and_time/efficient_front.hpp"
-
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "firmware/operating_points/measured_points.hpp"
 
 using namespace compueye::firmware;
 

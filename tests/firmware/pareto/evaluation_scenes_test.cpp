@@ -1,4 +1,4 @@
-#include "studies/accuracy_and_time/evaluation_scenes.hpp"
+#include "studies/accuracy_and_time/scenes.hpp"
 
 #include <doctest/doctest.h>
 

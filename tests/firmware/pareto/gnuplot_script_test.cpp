@@ -2,8 +2,10 @@
 
 #include <doctest/doctest.h>
 
-#include "studies/accuracy_and_time/plot_curves.hpp"
-#include "studies/accuracy_and_time/sweep_text.hpp"
+#include <algorithm>
+
+#include "firmware/app/commands/pareto_report.hpp"
+#include "studies/accuracy_and_time/sweep_files.hpp"
 #include "tests/firmware/pareto/some_sweep.hpp"
 
 using namespace compueye;

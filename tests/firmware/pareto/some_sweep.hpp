@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "studies/accuracy_and_time/sweep.hpp"
+#include "firmware/operating_points/measured_points.hpp"
 
 namespace compueye::test {
 
@@ -21,6 +21,8 @@ inline firmware::Sweep some_sweep(const std::vector<SomePoint>& points) {
   sweep.machine = firmware::this_machine();
   sweep.constraint = recon::ConstraintKind::box;
   sweep.scenes = {"line-art", "bars"};
+  sweep.first_scene_seed = 2001;
+  sweep.pictures_a_level = 12;
   sweep.levels = {{1.0, 0.3}, {4.0, 1.2}};
   sweep.channels = 64;
   sweep.seeing = 60;

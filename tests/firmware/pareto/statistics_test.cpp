@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "studies/accuracy_and_time/frame_times.hpp"
-#include "studies/accuracy_and_time/quality_summary.hpp"
+#include "firmware/operating_points/measured_points.hpp"
+#include "studies/accuracy_and_time/point_meter.hpp"
 
 using namespace compueye::firmware;
 

@@ -1,4 +1,4 @@
-#include "studies/accuracy_and_time/sweep_table.hpp"
+#include "studies/accuracy_and_time/sweep_plan.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,6 @@
 #include "firmware/operating_points/machine.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
-#include "studies/accuracy_and_time/curve_eyes.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -25,7 +24,7 @@ Board some_board() {
   return *board;
 }
 
-SweepPlan plan_of(const ParetoOptions& options, int seeing = 64) {
+SweepPlan plan_of(const SweepOptions& options, int seeing = 64) {
   auto plan = plan_sweep(some_board(), options, seeing);
   REQUIRE(plan.has_value());
   return *plan;
@@ -55,7 +54,7 @@ TEST_CASE("only what goes together is swept, with the board's constraint where i
 TEST_CASE("the board's own point comes first and is among those of its curve, quick or not") {
   for (const SolverKind solver : {SolverKind::admm, SolverKind::pdhg}) {
     for (const bool quick : {false, true}) {
-      ParetoOptions options;
+      SweepOptions options;
       options.quick = quick;
       Board board = some_board();
       board.reconstruction.solver = solver;
@@ -69,7 +68,7 @@ TEST_CASE("the board's own point comes first and is among those of its curve, qu
 }
 
 TEST_CASE("options leave out solvers and bases, and names that do not exist are errors") {
-  ParetoOptions options;
+  SweepOptions options;
   options.solvers = {"admm", "cp"};
   options.bases = {"dct"};
   const SweepPlan plan = plan_of(options);
@@ -98,7 +97,7 @@ TEST_CASE("what takes minutes on a large eye is left out with a note, unless it 
   CHECK_FALSE(has(large, SolverKind::admm, Precision::f64));
   CHECK(has(large, SolverKind::admm, Precision::f32));
   CHECK(large.notes.size() == 6);
-  ParetoOptions options;
+  SweepOptions options;
   options.solvers = {"tsvd"};
   CHECK(has(plan_of(options, 5000), SolverKind::tsvd, Precision::f32));
 }

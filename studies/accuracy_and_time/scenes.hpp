@@ -6,17 +6,20 @@
 #include <vector>
 
 #include "firmware/eye/board.hpp"
-#include "firmware/eye/picture_quality.hpp"
+#include "firmware/operating_points/measured_points.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
 #include "recon/setup/factor.hpp"
-#include "studies/accuracy_and_time/motion.hpp"
 
 namespace compueye::firmware {
 
 /// Pictures that no rule was fitted on: docs/lambda-rule.md has seeds up to 5 and from 1001 on, boards show seed 0.
 inline constexpr std::uint64_t first_evaluation_seed = 2001;
 inline constexpr std::size_t evaluation_scenes = 12;
+
+/// Frames of a sequence, the judged one last, and how many of them a piece of the scene moves in (Motion::sprite).
+inline constexpr std::size_t sequence_frames = 12;
+inline constexpr std::size_t moving_frames = 6;
 
 /// A drawing in front of the eye and the light that reaches each ommatidium through the simulator's optics.
 struct EvaluationScene {
@@ -36,12 +39,6 @@ struct EvaluationFrame {
 /// The frames of one scene in order, the judged one last.
 using FrameSequence = std::vector<EvaluationFrame>;
 
-/// A dark or a bright day: noise as a multiple of the board's own.
-struct NoiseLevel {
-  double times = 1.0;
-  double sigma = 0.0;  ///< of one sample, in white pixels: all that the rule for lambda is told
-};
-
 /// The built-in scenes that suit the eye: drawings, heads and bars where there are pixels enough to draw on (at least
 /// 32 x 32), single dots otherwise.
 [[nodiscard]] std::vector<std::string> usual_scenes(const Board& board);
@@ -59,6 +56,17 @@ struct NoiseLevel {
                                                                   const std::vector<EvaluationScene>& scenes,
                                                                   const std::vector<std::uint8_t>& sees,
                                                                   const NoiseLevel& level, Motion motion);
+
+/// What the conventional eye makes of the scenes at each noise level; nothing for a lattice that has none. Errors:
+/// those of conventional_picture(); interrupted.
+[[nodiscard]] hal::Result<std::vector<QualitySummary>> conventional_figures(const Board& board,
+                                                                            const std::vector<EvaluationScene>& scenes,
+                                                                            const std::vector<NoiseLevel>& levels,
+                                                                            const recon::Progress& progress);
+
+/// The scene so many frames before its piece is in its place: a square a quarter as wide as the picture, from its
+/// middle, an eightieth of the width further right for each frame (at least a pixel), and black where it will be.
+[[nodiscard]] hal::Image before_arrival(const hal::Image& scene, std::size_t frames);
 
 /// The board with a sensor whose noise of a sample, rounding included, is so many times its own.
 [[nodiscard]] Board with_noise(const Board& board, double times);

@@ -1,4 +1,4 @@
-#include "studies/accuracy_and_time/sweep_text.hpp"
+#include "firmware/app/commands/pareto_report.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,6 @@
 
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
-#include "recon/option_names.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -16,7 +15,7 @@ std::string head_text(const Sweep& s) {
       "{}: {} of {} ommatidia see its {} x {} pixels; {} cores of {}, one in use where no threads are named\n"
       "{} scenes ({}, seeds from {}) at {} noise levels, through the simulated eye; lambda by rule from sigma\n",
       s.board, grouped(s.seeing), grouped(s.channels), s.image_rows, s.image_cols, s.machine.cores, s.machine.cpu,
-      evaluation_scenes, fmt::join(s.scenes, ", "), first_evaluation_seed, s.levels.size());
+      s.pictures_a_level, fmt::join(s.scenes, ", "), s.first_scene_seed, s.levels.size());
 }
 
 std::vector<std::string> cells_of(const std::string& name, const std::string& iterations, const QualitySummary& q) {

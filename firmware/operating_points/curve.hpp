@@ -1,16 +1,22 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "firmware/eye/board.hpp"
-#include "hal/result.hpp"
 #include "recon/reconstructor.hpp"
-#include "studies/accuracy_and_time/motion.hpp"
-#include "studies/accuracy_and_time/pareto_options.hpp"
 
 namespace compueye::firmware {
+
+/// What the frames before the judged one showed, for solvers that go on from the last frame.
+enum class Motion : std::uint8_t {
+  none,    ///< nothing: one frame, solved from a cold start
+  still,   ///< the same scene, with fresh noise
+  sprite,  ///< the same scene but for a piece of it that comes in from the side
+};
+[[nodiscard]] std::string_view name(Motion motion) noexcept;
 
 /// One curve of accuracy against time: everything that stays while the iterations grow.
 struct Curve {
@@ -29,20 +35,7 @@ struct Curve {
 /// what a legend says.
 [[nodiscard]] std::string title(const Curve& curve);
 
-/// A curve and how far it is followed.
-struct PlannedCurve {
-  Curve curve;
-  std::vector<int> iterations;  ///< ascending
-};
-
-struct SweepPlan {
-  std::vector<PlannedCurve> curves;  ///< what matters most first, because time may run out
-  std::vector<std::string> notes;    ///< what was left out, and how to ask for it
-};
-
-/// The table of what is swept, cut to the options and to an eye of `seeing` rows: with the board's constraint where a
-/// pair takes it, else with none; the board's own point is always among its solver's. Error usage for a name that does
-/// not exist, or when nothing is left.
-[[nodiscard]] hal::Result<SweepPlan> plan_sweep(const Board& board, const ParetoOptions& options, int seeing);
+/// The board as it would be if its file named this curve.
+[[nodiscard]] Board with_curve(const Board& board, const Curve& curve);
 
 }  // namespace compueye::firmware

@@ -1,4 +1,4 @@
-#include "studies/accuracy_and_time/evaluation_scenes.hpp"
+#include "studies/accuracy_and_time/scenes.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,12 @@
 #include <numeric>
 #include <utility>
 
+#include "firmware/eye/conventional_eye.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "hal/sample_block.hpp"
 #include "hal/sample_source.hpp"
+#include "hal/try.hpp"
 #include "sim/built_in_scenes.hpp"
 #include "sim/optics.hpp"
 #include "sim/scene_truth.hpp"
@@ -36,19 +38,12 @@ Result<void> check_name(const std::string& name) {
 
 Result<EvaluationScene> drawn(const Board& board, const sim::Optics& optics, const std::string& name,
                               std::uint64_t seed, bool moving) {
-  const auto scene = choose_scene(board, {name, seed, std::nullopt});
-  if (!scene) return tl::unexpected(scene.error());
-  auto truth = sim::scene_truth(*scene, board.object);
-  if (!truth) return tl::unexpected(std::move(truth.error()));
-  auto signals = optics.expose(*scene);
-  if (!signals) return tl::unexpected(std::move(signals.error()));
-  EvaluationScene drawing{name, seed, std::move(*truth), std::move(*signals), {}};
+  const sim::Scene scene = TRY(choose_scene(board, {name, seed, std::nullopt}));
+  EvaluationScene drawing{name, seed, TRY(sim::scene_truth(scene, board.object)), TRY(optics.expose(scene)), {}};
   for (std::size_t left = moving_frames; moving && left > 0; --left) {
-    sim::Scene earlier = *scene;
-    earlier.picture = before_arrival(scene->picture, left);
-    auto before = optics.expose(earlier);
-    if (!before) return tl::unexpected(std::move(before.error()));
-    drawing.moving.push_back(std::move(*before));
+    sim::Scene earlier = scene;
+    earlier.picture = before_arrival(scene.picture, left);
+    drawing.moving.push_back(TRY(optics.expose(earlier)));
   }
   return drawing;
 }
@@ -70,9 +65,7 @@ std::vector<std::string> usual_scenes(const Board& board) {
 
 Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board, const std::vector<std::string>& names,
                                                             bool moving, const recon::Progress& progress) {
-  for (const std::string& name : names) {
-    if (auto known = check_name(name); !known) return tl::unexpected(std::move(known.error()));
-  }
+  for (const std::string& name : names) TRY(check_name(name));
   sim::Optics optics = simulated_eye_settings(board, {}, 0).optics;
   optics.profile = sim::AngularProfile::flat_top(optics.eye.acceptance_rad);
   std::vector<EvaluationScene> scenes;
@@ -81,9 +74,7 @@ Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board, 
       return hal::fail(ErrorCode::interrupted, board.name, "stopped before anything was measured");
     }
     const std::size_t i = scenes.size();
-    auto scene = drawn(board, optics, names[i % names.size()], first_evaluation_seed + i, moving);
-    if (!scene) return tl::unexpected(std::move(scene.error()));
-    scenes.push_back(std::move(*scene));
+    scenes.push_back(TRY(drawn(board, optics, names[i % names.size()], first_evaluation_seed + i, moving)));
   }
   return scenes;
 }
@@ -100,8 +91,7 @@ Result<std::vector<FrameSequence>> take_frames(const Board& board, const std::ve
                                                const std::vector<std::uint8_t>& sees, const NoiseLevel& level,
                                                Motion motion) {
   const Board noisy = with_noise(board, level.times);
-  const auto sensor = sim::Sensor::create(simulated_eye_settings(noisy, {}, 0).sensor);
-  if (!sensor) return tl::unexpected(sensor.error());
+  const sim::Sensor sensor = TRY(sim::Sensor::create(simulated_eye_settings(noisy, {}, 0).sensor));
   const auto channels = static_cast<std::size_t>(board.eye.ommatidia());
   hal::SourceDescription description;
   description.channels = board.eye.ommatidia();
@@ -109,8 +99,7 @@ Result<std::vector<FrameSequence>> take_frames(const Board& board, const std::ve
   description.ommatidium_of_channel.resize(channels);
   std::iota(description.ommatidium_of_channel.begin(), description.ommatidium_of_channel.end(), 0);
   description.sample_offset_ns.assign(channels, 0);
-  auto correction = Correction::create(correction_settings(noisy, sees), description);
-  if (!correction) return tl::unexpected(std::move(correction.error()));
+  Correction correction = TRY(Correction::create(correction_settings(noisy, sees), description));
   std::vector<std::uint8_t> valid(channels, 1);
   for (const int dead : board.sensor.dead) valid[static_cast<std::size_t>(dead)] = 0;
   std::vector<double> levels_lsb(channels);
@@ -120,12 +109,12 @@ Result<std::vector<FrameSequence>> take_frames(const Board& board, const std::ve
     FrameSequence& sequence = sequences.emplace_back();
     for (std::size_t f = motion == Motion::none ? sequence_frames - 1 : 0; f < sequence_frames; ++f) {
       hal::SampleBlock block;
-      block.flags.saturated = sensor->digitise(signals_of(scene, motion, f), scene.seed, f, levels_lsb, codes);
+      block.flags.saturated = sensor.digitise(signals_of(scene, motion, f), scene.seed, f, levels_lsb, codes);
       block.codes = codes;
       block.valid = valid;
       block.bits = board.sensor.bits;
       EvaluationFrame frame{std::vector<float>(channels), std::vector<float>(channels)};
-      const CorrectionReport report = correction->apply(block, frame.y, frame.weights);
+      const CorrectionReport report = correction.apply(block, frame.y, frame.weights);
       if (!report.usable) {
         return hal::fail(ErrorCode::mismatch, board.place("sensor", "max_missing_share"),
                          fmt::format("a frame of {} lacks {} channels, {} of them saturated, and would be dropped",
@@ -135,6 +124,44 @@ Result<std::vector<FrameSequence>> take_frames(const Board& board, const std::ve
     }
   }
   return sequences;
+}
+
+Result<std::vector<QualitySummary>> conventional_figures(const Board& board, const std::vector<EvaluationScene>& scenes,
+                                                         const std::vector<NoiseLevel>& levels,
+                                                         const recon::Progress& progress) {
+  std::vector<QualitySummary> figures;
+  if (!conventional_board(board)) return figures;
+  for (const NoiseLevel& level : levels) {
+    const Board noisy = with_noise(board, level.times);
+    std::vector<PictureQuality> pictures;
+    for (const EvaluationScene& scene : scenes) {
+      const auto done = static_cast<double>(figures.size() * scenes.size() + pictures.size());
+      if (!progress("conventional eye", done, static_cast<double>(levels.size() * scenes.size()))) {
+        return hal::fail(ErrorCode::interrupted, board.name, "stopped before anything was measured");
+      }
+      const sim::Scene shown = TRY(choose_scene(noisy, {scene.name, scene.seed, std::nullopt}));
+      pictures.push_back(TRY(quality_of(TRY(conventional_picture(noisy, shown, scene.seed)), scene.truth)));
+    }
+    figures.push_back(summarise(pictures));
+  }
+  return figures;
+}
+
+hal::Image before_arrival(const hal::Image& scene, std::size_t frames) {
+  constexpr int pieces = 4, steps = 80;
+  const int side = std::max(std::min(scene.rows, scene.cols) / pieces, 1);
+  const int top = (scene.rows - side) / 2, left = (scene.cols - side) / 2;
+  const int shift = std::max(scene.cols / steps, 1) * static_cast<int>(frames);
+  hal::Image picture = scene;
+  for (int row = top; row < top + side; ++row) {
+    for (int col = left; col < left + side; ++col) picture.at(row, col) = 0.0F;
+  }
+  for (int row = top; row < top + side; ++row) {
+    for (int col = left; col < std::min(left + side, scene.cols - shift); ++col) {
+      picture.at(row, col + shift) = scene.at(row, col);
+    }
+  }
+  return picture;
 }
 
 }  // namespace compueye::firmware

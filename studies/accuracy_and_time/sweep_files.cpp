@@ -1,13 +1,56 @@
+#include "studies/accuracy_and_time/sweep_files.hpp"
+
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <span>
+#include <system_error>
 #include <vector>
 
+#include "firmware/files/atomic_file.hpp"
+#include "hal/try.hpp"
 #include "recon/option_names.hpp"
-#include "studies/accuracy_and_time/sweep_text.hpp"
+#include "studies/accuracy_and_time/gnuplot_script.hpp"
 
 namespace compueye::firmware {
 namespace {
+
+namespace fs = std::filesystem;
+using hal::ErrorCode;
+using hal::Result;
+
+constexpr int not_started = 127;
+
+/// Its exit code, 127 when there is none to start.
+int run_gnuplot(const fs::path& folder, const std::string& script) {
+  std::string program = "gnuplot", argument = script;
+  std::array<char*, 3> words{program.data(), argument.data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", 0, 0);
+  pid_t process = -1;
+  const int failed = posix_spawnp(&process, program.c_str(), &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) return not_started;
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+Result<void> publish(const fs::path& folder, const std::string& name) {
+  std::error_code ec;
+  fs::rename(folder / (name + ".partial"), folder / name, ec);
+  if (!ec) return {};
+  return hal::fail(ErrorCode::io, (folder / name).string(), "was not drawn by gnuplot: " + ec.message());
+}
 
 constexpr const char* header =
     "board,solver,basis,constraint,operator,precision,warm_motion,threads,iterations,times_board_noise,sigma,lambda,"
@@ -58,6 +101,30 @@ std::string sweep_csv(const Sweep& s) {
                         cost_cells(point, is_efficient(s.levels.size(), i)));
   }
   return text;
+}
+
+std::string plot_stem(const NoiseLevel& level) {
+  return "pareto-noise-" + fmt::format("{:g}", level.times);
+}
+
+Result<bool> write_plots(const std::string& to, const Sweep& sweep) {
+  const fs::path folder = to;
+  bool drawn = true;
+  for (std::size_t level = 0; level < sweep.levels.size(); ++level) {
+    const std::string stem = plot_stem(sweep.levels[level]);
+    const std::string script = gnuplot_script(sweep, level, stem), name = stem + ".gnuplot";
+    TRY(write_file_atomically(folder / name, std::as_bytes(std::span(script))));
+    // Without gnuplot the other scripts are worth having all the same.
+    const int code = drawn ? run_gnuplot(folder, name) : not_started;
+    drawn = code != not_started;
+    if (!drawn) continue;
+    if (code != 0) {
+      return hal::fail(ErrorCode::io, (folder / name).string(),
+                       fmt::format("gnuplot ended with exit code {}; pareto.csv has every point", code));
+    }
+    for (const char* ending : {".svg", ".png"}) TRY(publish(folder, stem + ending));
+  }
+  return drawn;
 }
 
 }  // namespace compueye::firmware
