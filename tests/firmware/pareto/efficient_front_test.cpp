@@ -63,3 +63,16 @@ TEST_CASE("along a front of many points time rises and error falls") {
     CHECK(reached);
   }
 }
+
+TEST_CASE("nine in ten is counted on the bad side of each figure") {
+  std::vector<PictureQuality> pictures;
+  for (int i = 1; i <= 20; ++i) pictures.push_back({0.01 * i, 40.0 - i, 1.0 - 0.01 * i});
+  const QualitySummary summary = summarise(pictures);
+  CHECK(summary.mean.nmse == doctest::Approx(0.105));
+  CHECK(summary.mean.psnr_db == doctest::Approx(29.5));
+  CHECK(summary.nine_in_ten.nmse == doctest::Approx(0.18));
+  CHECK(summary.nine_in_ten.psnr_db == doctest::Approx(22.0));
+  CHECK(summary.nine_in_ten.ssim == doctest::Approx(0.82));
+  const std::vector<PictureQuality> one{{0.5, 3.0, 0.25}};
+  CHECK(summarise(one).nine_in_ten.nmse == 0.5);
+}

@@ -5,21 +5,16 @@
 #include <cmath>
 #include <set>
 
-#include "recon/response.hpp"
+#include "tests/studies/boards.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
+using compueye::test::board_8x8;
 
 namespace {
 
-Board board_8x8() {
-  auto board = load_board(std::filesystem::path(COMPUEYE_SOURCE_DIR) / "boards" / "sim-8x8");
-  REQUIRE(board.has_value());
-  return *board;
-}
-
 std::vector<EvaluationScene> scenes_of(const Board& board, const std::vector<std::string>& names, bool moving = false) {
-  auto scenes = make_evaluation_scenes(board, names, moving, [](std::string_view, double, double) { return true; });
+  auto scenes = make_evaluation_scenes(board, names, moving, test::go_on);
   REQUIRE(scenes.has_value());
   return *scenes;
 }
@@ -79,9 +74,8 @@ TEST_CASE("dead ommatidia have no weight") {
 
 TEST_CASE("scenes that do not exist or never change are refused, and a stop stops") {
   const Board board = board_8x8();
-  const auto on = [](std::string_view, double, double) { return true; };
   for (const char* name : {"fig2", "lineart", "a.png"}) {
-    const auto refused = make_evaluation_scenes(board, {name}, false, on);
+    const auto refused = make_evaluation_scenes(board, {name}, false, test::go_on);
     REQUIRE_FALSE(refused.has_value());
     CHECK(refused.error().code == hal::ErrorCode::usage);
     CHECK(refused.error().place == "--scenes");

@@ -7,6 +7,7 @@
 #include "firmware/operating_points/machine.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
+#include "tests/studies/boards.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -17,11 +18,10 @@ using recon::SolverKind;
 namespace {
 
 Board some_board() {
-  auto board = load_board(std::filesystem::path(COMPUEYE_SOURCE_DIR) / "boards" / "sim-8x8");
-  REQUIRE(board.has_value());
-  board->reconstruction.basis = BasisKind::tv;
-  board->reconstruction.iterations = 17;
-  return *board;
+  Board board = test::board_8x8();
+  board.reconstruction.basis = BasisKind::tv;
+  board.reconstruction.iterations = 17;
+  return board;
 }
 
 SweepPlan plan_of(const SweepOptions& options, int seeing = 64) {

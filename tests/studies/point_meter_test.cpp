@@ -1,7 +1,10 @@
+#include "studies/accuracy_and_time/point_meter.hpp"
+
 #include <doctest/doctest.h>
 
-#include "studies/accuracy_and_time/point_meter.hpp"
-#include "tests/firmware/temporary_folder.hpp"
+#include <cmath>
+
+#include "tests/studies/boards.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -15,22 +18,21 @@ struct Judged {
 
 /// pdhg in pixels on the 8x8 eye at the board's noise.
 Judged judged(Motion motion, int iterations) {
-  auto board = load_board(std::filesystem::path(COMPUEYE_SOURCE_DIR) / "boards" / "sim-8x8");
-  REQUIRE(board.has_value());
-  const recon::Progress on = [](std::string_view, double, double) { return true; };
-  const auto living = living_response(*board, on);
+  Board board = test::board_8x8();
+  const recon::Progress on = test::go_on;
+  const auto living = living_response(board, on);
   REQUIRE(living.has_value());
-  const auto scenes = make_evaluation_scenes(*board, {"dots"}, true, on);
+  const auto scenes = make_evaluation_scenes(board, {"dots"}, true, on);
   REQUIRE(scenes.has_value());
-  const std::vector<NoiseLevel> levels{{1.0, board->noise_sigma()}};
-  auto frames = take_frames(*board, *scenes, living->sees, levels.front(), motion);
+  const std::vector<NoiseLevel> levels{{1.0, board.noise_sigma()}};
+  auto frames = take_frames(board, *scenes, living->sees, levels.front(), motion);
   REQUIRE(frames.has_value());
   const std::vector<std::vector<FrameSequence>> by_level{std::move(*frames)};
   Curve curve{recon::SolverKind::pdhg, recon::BasisKind::identity, recon::ConstraintKind::box, recon::Precision::f32};
   curve.motion = motion;
   const test::TemporaryFolder folder;  // for the factor
-  board->folder = folder.path();
-  auto eyes = set_up_curve(*board, *living, curve, levels, on);
+  board.folder = folder.path();
+  auto eyes = set_up_curve(board, *living, curve, levels, on);
   REQUIRE_MESSAGE(eyes.has_value(), eyes.error().text());
   const hal::VirtualClock clock;
   const PointMeter meter(*scenes, levels, by_level, clock, [] { return true; });
@@ -53,4 +55,21 @@ TEST_CASE("frames that go on from the last one are better than cold ones of as m
 TEST_CASE("a piece that moves does not make a warm start worse than a cold one") {
   constexpr int few = 5;
   CHECK(judged(Motion::sprite, few).nmse < 1.2 * judged(Motion::none, few).nmse);
+}
+
+TEST_CASE("percentiles of frame times are those of the nearest rank") {
+  FrameTimes times;
+  CHECK(std::isnan(times.percentile_ms(500)));
+  for (int i = 2000; i >= 1; --i) times.add(i * 1'000'000LL);
+  CHECK(times.count() == 2000);
+  CHECK(times.percentile_ms(500) == doctest::Approx(1000.0));
+  CHECK(times.percentile_ms(999) == doctest::Approx(1998.0));
+  CHECK(times.percentile_ms(1000) == doctest::Approx(2000.0));
+}
+
+TEST_CASE("with few frames the 99.9th percentile is the slowest of them") {
+  FrameTimes times;
+  for (const int ms : {3, 9, 1, 4}) times.add(ms * 1'000'000LL);
+  CHECK(times.percentile_ms(999) == doctest::Approx(9.0));
+  CHECK(times.percentile_ms(500) == doctest::Approx(3.0));
 }

@@ -1,0 +1,108 @@
+#include "studies/comparison/comparison.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "recon/option_names.hpp"
+#include "recon/solver_table.hpp"
+#include "studies/comparison/comparison_files.hpp"
+#include "tests/studies/boards.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+
+namespace {
+
+CompareOptions quick(std::vector<std::string> solvers, std::vector<std::string> bases) {
+  CompareOptions options;
+  options.solvers = std::move(solvers);
+  options.bases = std::move(bases);
+  options.iterations = 20;
+  return options;
+}
+
+hal::Result<Comparison> compared(const CompareOptions& options, const recon::Progress& progress = test::go_on) {
+  const test::TemporaryFolder folder;
+  Board board = test::board_8x8();
+  board.folder = folder.path();
+  const hal::VirtualClock clock;
+  return compare(board, options, clock, progress);
+}
+
+}  // namespace
+
+TEST_CASE("every solver of the list is compared with every basis that it takes, with the constraint where it can") {
+  const auto all = contenders({}, recon::ConstraintKind::box).value();
+  for (const auto& solver : recon::solver_names()) {
+    for (const auto& basis : recon::basis_names()) {
+      CAPTURE(solver.name);
+      CAPTURE(basis.name);
+      const bool boxed = recon::supports(solver.kind, basis.kind, recon::ConstraintKind::box);
+      const bool free = recon::supports(solver.kind, basis.kind, recon::ConstraintKind::none);
+      const auto found = std::find_if(
+          all.begin(), all.end(), [&](const Contender& c) { return c.solver == solver.kind && c.basis == basis.kind; });
+      REQUIRE((found != all.end()) == (boxed || free));
+      if (found != all.end()) CHECK((found->constraint == recon::ConstraintKind::box) == boxed);
+    }
+  }
+}
+
+TEST_CASE("names that do not exist, and pairs of which nothing is left, are refused by their option") {
+  const auto refused = [](const CompareOptions& options) {
+    const auto error = contenders(options, recon::ConstraintKind::box).error();
+    CHECK(error.code == hal::ErrorCode::usage);
+    return error.place;
+  };
+  CHECK(refused(quick({"amdm"}, {})) == "--solvers");
+  CHECK(refused(quick({}, {"wavelet"})) == "--bases");
+  CHECK(refused(quick({"tsvd"}, {"tv"})) == "--solvers");
+  CompareOptions options;
+  options.constraint = "positive";
+  CHECK(refused(options) == "--constraint");
+}
+
+TEST_CASE("a comparison says how many threads shared a frame: the options' or the board's") {
+  CompareOptions options = quick({"admm"}, {"identity"});
+  const auto of_board = compared(options);
+  REQUIRE(of_board.has_value());
+  CHECK(of_board->threads == 1);
+  options.threads = 4;
+  const auto of_options = compared(options);
+  REQUIRE(of_options.has_value());
+  CHECK(of_options->threads == 4);
+  CHECK(of_options->rows.front().picture.pixels == of_board->rows.front().picture.pixels);
+}
+
+TEST_CASE("the CSV has the figures of every row and a line for the conventional eye, all with the same columns") {
+  const auto comparison = compared(quick({"admm", "tsvd"}, {"identity", "dct"}));
+  REQUIRE(comparison.has_value());
+  REQUIRE(comparison->rows.size() == 3);
+  std::istringstream csv(comparison_csv(*comparison));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(csv, line);) lines.push_back(line);
+  REQUIRE(lines.size() == 1 + 1 + 3);
+  std::string header = "board,scene,scene_seed,seed,samples";
+  for (const ComparedFigure& figure : figures_of(comparison->rows.front())) header += ',' + std::string(figure.key);
+  CHECK(lines.front() == header + '\r');
+  for (const std::string& line : lines) {
+    CHECK(std::count(line.begin(), line.end(), ',') == std::count(header.begin(), header.end(), ','));
+  }
+  CHECK(lines[1].find("conventional eye") != std::string::npos);
+}
+
+TEST_CASE("a stop keeps the rows that are done and names the missing ones; without a row it is an error") {
+  const auto stopped = compared(quick({"admm", "cp"}, {"identity"}), [](std::string_view what, double done, double) {
+    return what != "comparing" || done < 1.0;
+  });
+  REQUIRE(stopped.has_value());
+  CHECK(stopped->planned == 2);
+  CHECK(stopped->rows.size() == 1);
+  CHECK(stopped->missing == std::vector<std::string>{"identity box cp"});
+  const auto nothing = compared(quick({"admm"}, {"identity"}),
+                                [](std::string_view what, double, double) { return what != "comparing"; });
+  REQUIRE_FALSE(nothing.has_value());
+  CHECK(nothing.error().code == hal::ErrorCode::interrupted);
+}
