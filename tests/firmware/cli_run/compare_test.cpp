@@ -10,6 +10,7 @@
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
 #include "tests/firmware/cli_run/copied_board.hpp"
+#include "tests/firmware/cli_run/refused.hpp"
 
 using namespace compueye;
 using namespace compueye::test;
@@ -36,15 +37,6 @@ Json row_of(const Json& json, const std::string& solver, const std::string& basi
     if (row["solver"] == solver && row["basis"] == basis) return row;
   }
   return {};
-}
-
-void check_refused(const CopiedBoard& board, std::vector<std::string> more, int exit_code,
-                   const std::vector<std::string>& fragments) {
-  const Ended ended = compueye::test::compueye(compare_arguments(board, std::move(more)));
-  CAPTURE(ended.err);
-  CHECK(ended.exit_code == exit_code);
-  CHECK(ended.out.empty());
-  for (const std::string& fragment : fragments) CHECK(contains(ended.err, fragment));
 }
 
 }  // namespace
@@ -104,6 +96,12 @@ TEST_CASE("iterations, rank and lambda are the board's, by rule or by hand") {
   CHECK(row_of(by_rule, "tsvd", "identity")["duality_gap"].is_null());
   const Json by_hand = compare_json(board, {"--solvers", "admm", "--lambda", "0.125"});
   for (const Json& row : by_hand["compared"]) CHECK(row["lambda"] == 0.125);
+}
+
+TEST_CASE("compare says how many threads shared a frame") {
+  const CopiedBoard board;
+  CHECK(compare_json(board, {"--solvers", "admm", "--iterations", "5"})["threads"] == 1);
+  CHECK(compare_json(board, {"--solvers", "admm", "--iterations", "5", "--threads", "4"})["threads"] == 4);
 }
 
 TEST_CASE("factors are made once a metric and kept for the next time") {
@@ -178,22 +176,24 @@ TEST_CASE("another response, a table, a CSV and a contact sheet") {
 }
 
 TEST_CASE("compare refuses what makes no sense before it works") {
-  const CopiedBoard board;
-  check_refused(board, {"--solvers", "amdm"}, 2, {"--solvers", "'amdm'", "did you mean 'admm'?"});
-  check_refused(board, {"--bases", "dct,wavelet"}, 2, {"--bases", "'wavelet'", "identity, dct"});
-  check_refused(board, {"--constraint", "positive"}, 2, {"--constraint", "'positive'", "nonnegative"});
-  check_refused(board, {"--solvers", "tsvd", "--bases", "tv"}, 2, {"nothing to compare"});
-  check_refused(board, {"--iterations", "0"}, 2, {"--iterations", "is 0"});
-  check_refused(board, {"--threads", "0"}, 2, {"--threads", "is 0", "1 to 64"});
-  check_refused(board, {"--sigma", "-1"}, 2, {"--sigma", "is -1"});
-  check_refused(board, {"--sheet", board.outside("no/such/folder.png").string()}, 1, {"folder"});
-  const CopiedBoard narrow;
+  const CopiedBoard board, narrow;
+  const auto refused = [&](std::vector<std::string> more, const Refusal& expected) {
+    check_refused(compare_arguments(board, std::move(more)), expected);
+  };
+  refused({"--solvers", "amdm"}, {2, "usage", "--solvers", "amdm"});
+  refused({"--bases", "dct,wavelet"}, {2, "usage", "--bases", "wavelet"});
+  refused({"--constraint", "positive"}, {2, "usage", "--constraint", "positive"});
+  refused({"--solvers", "tsvd", "--bases", "tv"}, {2, "usage", "--solvers", ""});
+  refused({"--iterations", "0"}, {2, "usage", "--iterations", "0"});
+  refused({"--threads", "0"}, {2, "usage", "--threads", "64"});
+  refused({"--sigma", "-1"}, {2, "usage", "--sigma", "-1"});
+  refused({"--sheet", board.outside("no/such/folder.png").string()}, {1, "not found", "folder", ""});
   narrow.change("rows = 8", "rows = 6");
   const auto matrix = board.outside("A.npy");
   const Ended other =
       compueye::test::compueye({"response", "--board", narrow.path().string(), "--out", matrix.string()});
   REQUIRE(other.exit_code == 0);
-  check_refused(board, {"--response", matrix.string()}, 1, {"48 rows", "expected 64"});
+  refused({"--response", matrix.string()}, {1, "mismatch", "A.npy", "48"});
 }
 
 TEST_CASE("Ctrl-C keeps what compare has measured") {

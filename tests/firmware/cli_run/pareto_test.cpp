@@ -11,6 +11,7 @@
 
 #include "firmware/files/png.hpp"
 #include "tests/firmware/cli_run/pareto_command.hpp"
+#include "tests/firmware/cli_run/refused.hpp"
 
 using namespace compueye;
 using namespace compueye::test;
@@ -163,18 +164,14 @@ TEST_CASE("a budget ends the sweep, and a partial sweep leaves a whole one in it
 
 TEST_CASE("pareto refuses what makes no sense before it works") {
   const CopiedBoard board;
-  const auto refused = [&](const std::vector<std::string>& more, int exit_code, const std::vector<std::string>& parts) {
-    const Ended ended = compueye::test::compueye(pareto_arguments(board, more));
-    CAPTURE(ended.err);
-    CHECK(ended.exit_code == exit_code);
-    CHECK(ended.out.empty());
-    for (const std::string& part : parts) CHECK(contains(ended.err, part));
+  const auto refused = [&](std::vector<std::string> more, const Refusal& expected) {
+    check_refused(pareto_arguments(board, std::move(more)), expected);
   };
-  refused({"--solvers", "amdm"}, 2, {"--solvers", "'amdm'", "did you mean 'admm'?"});
-  refused({"--bases", "wavelet"}, 2, {"--bases", "'wavelet'"});
-  refused({"--scenes", "fig2"}, 2, {"--scenes", "dots"});
-  refused({"--noise", "0"}, 2, {"--noise", "above 0"});
-  refused({"--budget", "-1"}, 2, {"--budget", "-1"});
-  refused({"--longest", "0"}, 2, {"--longest"});
-  refused({"--out", board.path().string() + "/board.toml/x"}, 1, {"board.toml"});
+  refused({"--solvers", "amdm"}, {2, "usage", "--solvers", "amdm"});
+  refused({"--bases", "wavelet"}, {2, "usage", "--bases", "wavelet"});
+  refused({"--scenes", "fig2"}, {2, "usage", "--scenes", "fig2"});
+  refused({"--noise", "0"}, {2, "usage", "--noise", "0"});
+  refused({"--budget", "-1"}, {2, "usage", "--budget", "-1"});
+  refused({"--longest", "0"}, {2, "usage", "--longest", "0"});
+  refused({"--out", board.path().string() + "/board.toml/x"}, {1, "not found", "board.toml", ""});
 }
