@@ -1,10 +1,17 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
+#include "firmware/eye/board.hpp"
+#include "firmware/eye/ready_eye.hpp"
+#include "firmware/pipeline/correction.hpp"
+#include "hal/clock.hpp"
 #include "hal/result.hpp"
+#include "hal/sample_source.hpp"
 
 namespace compueye::firmware {
 
@@ -43,5 +50,22 @@ inline constexpr double deadline_share = 0.8;
 /// Times real solves: `solve_ns(iterations)` solves one frame and says how long it took.
 using TimedSolve = std::function<hal::Result<std::int64_t>(int iterations)>;
 [[nodiscard]] hal::Result<SolveTime> measure_solve_time(const TimedSolve& solve_ns, int most_iterations);
+
+/// One corrected frame, taken before the run.
+struct TrialFrame {
+  std::vector<float> y;
+  std::vector<float> weights;
+};
+
+/// Starts the source, takes one frame, stops it. A frame that the correction would drop is an error (mismatch) that
+/// says what is wrong with it: a simulated eye shows the same scene for ever, so the run would deliver nothing. Error
+/// interrupted when `stop` becomes true before the frame has come.
+[[nodiscard]] hal::Result<TrialFrame> take_trial_frame(const Board& board, const CorrectionSettings& settings,
+                                                       hal::SampleSource& source, hal::Clock& clock,
+                                                       const std::atomic<bool>& stop);
+
+/// Times a few real solves of the trial frame and leaves `eye` with as many iterations as the deadline allows.
+[[nodiscard]] hal::Result<DeadlineChoice> fit_deadline(double deadline_ms, double period_ms, const TrialFrame& frame,
+                                                       ReadyEye& eye, const hal::Clock& clock);
 
 }  // namespace compueye::firmware

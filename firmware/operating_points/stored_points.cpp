@@ -2,16 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
-#include <string>
+#include <stdexcept>
+#include <string_view>
 #include <system_error>
+#include <type_traits>
+#include <vector>
 
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/file_error.hpp"
-#include "firmware/operating_points/sweep_json.hpp"
+#include "hal/try.hpp"
 #include "recon/option_names.hpp"
 
 namespace compueye::firmware {
@@ -20,29 +28,252 @@ namespace {
 namespace fs = std::filesystem;
 using hal::ErrorCode;
 using hal::Result;
+using Json = nlohmann::ordered_json;
 
 constexpr const char* format_name = "compueye accuracy and time";
 constexpr int format_version = 1;
 
-Result<Json> read_json(const fs::path& path) {
+// The words of the file.
+constexpr std::array<recon::Named<recon::Precision>, 2> precisions{
+    {{"f32", recon::Precision::f32}, {"f64", recon::Precision::f64}}};
+const std::array<recon::Named<Motion>, 3> motions{
+    {{name(Motion::none), Motion::none}, {name(Motion::still), Motion::still}, {name(Motion::sprite), Motion::sprite}}};
+
+std::span<const recon::Named<recon::SolverKind>> words(recon::SolverKind) {
+  return recon::solver_names();
+}
+std::span<const recon::Named<recon::BasisKind>> words(recon::BasisKind) {
+  return recon::basis_names();
+}
+std::span<const recon::Named<recon::ConstraintKind>> words(recon::ConstraintKind) {
+  return recon::constraint_names();
+}
+std::span<const recon::Named<recon::Precision>> words(recon::Precision) {
+  return precisions;
+}
+std::span<const recon::Named<Motion>> words(Motion) {
+  return motions;
+}
+
+// The members of everything that is stored, once for both ways: `each` writes them in their order, or reads them back.
+
+void members(auto& each, Machine& machine) {
+  each("cpu", machine.cpu);
+  each("cores", machine.cores);
+  each("build", machine.build);
+}
+
+void members(auto& each, PictureQuality& quality) {
+  each("nmse", quality.nmse);
+  each("psnr_db", quality.psnr_db);
+  each("ssim", quality.ssim);
+}
+
+void members(auto& each, QualitySummary& summary) {
+  each("mean", summary.mean);
+  each("nine_in_ten", summary.nine_in_ten);
+}
+
+void members(auto& each, NoiseLevel& level) {
+  each("times_board_noise", level.times);
+  each("sigma", level.sigma);
+}
+
+void members(auto& each, LevelFigures& figures) {
+  each("times_board_noise", figures.times);
+  each("sigma", figures.sigma);
+  each("lambda", figures.lambda);
+  each("quality", figures.quality);
+}
+
+void members(auto& each, MeasuredPoint& point) {
+  each("solver", point.curve.solver);
+  each("basis", point.curve.basis);
+  each("constraint", point.curve.constraint);
+  each("precision", point.curve.precision);
+  each("operator", point.op);
+  each("operator_asked", point.curve.op);
+  each("threads", point.curve.threads);
+  each.derived("warm_start", point.curve.motion != Motion::none);
+  each("motion", point.curve.motion);
+  each("iterations", point.iterations);
+  each("median_ms", point.median_ms);
+  each("p999_ms", point.p999_ms);
+  each("timed_frames", point.timed_frames);
+  each("table_bytes", point.table_bytes);
+  each("workspace_bytes", point.workspace_bytes);
+  each("objective", point.objective);
+  each("overall", point.overall);
+  each("levels", point.levels);
+}
+
+void members(auto& each, Sweep& sweep) {
+  std::vector<std::vector<std::size_t>> efficient;
+  for (std::size_t level = 0; level < sweep.levels.size(); ++level) {
+    efficient.push_back(efficient_points(sweep, level));
+  }
+  std::array<double, 2> box{sweep.lo, sweep.hi};
+  each("board", sweep.board);
+  each("response_hash", sweep.response_hash);
+  each("machine", sweep.machine);
+  each("constraint", sweep.constraint);
+  each("box", box);
+  sweep.lo = box[0];
+  sweep.hi = box[1];
+  each("channels", sweep.channels);
+  each("seeing_channels", sweep.seeing);
+  each("rows", sweep.image_rows);
+  each("cols", sweep.image_cols);
+  each("scenes", sweep.scenes);
+  each("first_scene_seed", sweep.first_scene_seed);
+  each("pictures_a_level", sweep.pictures_a_level);
+  each("processor_share", sweep.processor_share);
+  each.derived("complete", sweep.cut_short.empty());
+  each("cut_short", sweep.cut_short);
+  each("planned", sweep.planned);
+  each("levels", sweep.levels);
+  each("conventional", sweep.conventional);
+  each("points", sweep.points);
+  each.derived("efficient", efficient);
+  each.derived("efficient_overall", efficient_points(sweep, sweep.levels.size()));
+  each("notes", sweep.notes);
+}
+
+template <class Value>
+concept Worded = requires(Value value) {
+  words(value);
+};
+template <class Value>
+struct IsList : std::false_type {};
+template <class Item>
+struct IsList<std::vector<Item>> : std::true_type {};
+
+struct Writer {
+  Json json = Json::object();
+  template <class Value>
+  void operator()(const char* key, Value& value) {
+    json[key] = written(value);
+  }
+  /// What follows from other members is only written.
+  template <class Value>
+  void derived(const char* key, const Value& value) {
+    json[key] = value;
+  }
+
+ private:
+  template <class Value>
+  static Json written(Value& value) {
+    if constexpr (std::is_same_v<Value, recon::OperatorKind>) {
+      return recon::name(value);
+    } else if constexpr (std::is_same_v<Value, std::optional<recon::OperatorKind>>) {
+      return value ? Json(recon::name(*value)) : Json();
+    } else if constexpr (Worded<Value>) {
+      for (const auto& named : words(value)) {
+        if (named.kind == value) return named.name;
+      }
+      return nullptr;
+    } else if constexpr (IsList<Value>::value) {
+      Json list = Json::array();
+      for (auto& item : value) list.push_back(written(item));
+      return list;
+    } else if constexpr (requires(Writer w) { members(w, value); }) {
+      Writer writer;
+      members(writer, value);
+      return std::move(writer.json);
+    } else {
+      return value;
+    }
+  }
+};
+
+/// Throws, as the library does; load_points() catches.
+struct Reader {
+  const Json& json;
+  template <class Value>
+  void operator()(const char* key, Value& value) const {
+    read(json.at(key), key, value);
+  }
+  template <class Value>
+  void derived(const char* /*key*/, const Value& /*value*/) const {}
+
+ private:
+  template <class Value>
+  static void read(const Json& from, const std::string& key, Value& value) {
+    if constexpr (std::is_same_v<Value, recon::OperatorKind>) {
+      value = operator_from(from);
+    } else if constexpr (std::is_same_v<Value, std::optional<recon::OperatorKind>>) {
+      value = from.is_null() ? Value{} : Value(operator_from(from));
+    } else if constexpr (Worded<Value>) {
+      const auto table = words(value);
+      const auto word = from.get<std::string>();
+      const auto found =
+          std::find_if(table.begin(), table.end(), [&](const auto& named) { return named.name == word; });
+      if (found == table.end()) throw std::out_of_range(fmt::format("{} is '{}'", key, word));
+      value = found->kind;
+    } else if constexpr (IsList<Value>::value) {
+      for (const Json& item : from) read(item, key, value.emplace_back());
+    } else if constexpr (requires(Reader r) { members(r, value); }) {
+      const Reader reader{from};
+      members(reader, value);
+    } else if (key == "psnr_db" && from.is_null()) {
+      // Infinity, the PSNR of a perfect picture, is null in JSON.
+      if constexpr (std::is_same_v<Value, double>) value = std::numeric_limits<double>::infinity();
+    } else {
+      value = from.get<Value>();
+    }
+  }
+
+  static recon::OperatorKind operator_from(const Json& from) {
+    const auto word = from.get<std::string>();
+    constexpr int most_kinds = 256;  // of an enumeration in eight bits
+    for (int k = 0; k < most_kinds; ++k) {
+      const auto kind = static_cast<recon::OperatorKind>(k);
+      if (word != "unknown" && recon::name(kind) == word) return kind;
+    }
+    throw std::out_of_range(fmt::format("operator is '{}'", word));
+  }
+};
+
+/// What no member alone tells.
+void check_whole(const Sweep& sweep) {
+  if (sweep.points.empty()) throw std::out_of_range("points is empty");
+  if (sweep.levels.empty()) throw std::out_of_range("levels is empty");
+  for (const MeasuredPoint& point : sweep.points) {
+    if (point.iterations < 1) throw std::out_of_range(fmt::format("iterations is {}", point.iterations));
+    if (point.levels.size() != sweep.levels.size()) throw std::out_of_range("a point lacks a level");
+  }
+}
+
+Json json_of(Sweep sweep) {
+  Writer writer;
+  members(writer, sweep);
+  return std::move(writer.json);
+}
+
+std::string text_of(const Json& json) {
+  constexpr int indent = 2;
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<Json> read_json(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) {
     std::error_code ignored;
     const bool there = fs::exists(path, ignored);
-    return hal::fail(there ? ErrorCode::io : ErrorCode::not_found, path.string(),
+    return hal::fail(there ? ErrorCode::io : ErrorCode::not_found, path,
                      there ? "cannot be read" : "is not there: nothing was measured yet");
   }
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.is_object() || !json.contains("format") || json["format"] != Json(format_name)) {
-    return hal::fail(ErrorCode::bad_format, path.string(),
+    return hal::fail(ErrorCode::bad_format, path,
                      "is damaged, or no file of measured points; run `compueye pareto` again");
   }
   return json;
 }
 
-Result<void> check(const fs::path& path, const Sweep& sweep, const PointsKey& key) {
-  const auto stale = [&](const std::string& sentence) { return hal::fail(ErrorCode::stale, path.string(), sentence); };
+Result<void> check_fits(const std::string& path, const Sweep& sweep, const PointsKey& key) {
+  const auto stale = [&](const std::string& sentence) { return hal::fail(ErrorCode::stale, path, sentence); };
   const Machine &then = sweep.machine, &now = key.machine;
   if (then.cpu != now.cpu || then.cores != now.cores) {
     return stale(fmt::format("was measured on another machine ({}, {} cores; this is {}, {} cores)", then.cpu,
@@ -69,32 +300,44 @@ PointsKey points_key(const Board& board, const recon::Response& living) {
   return {living.content_hash(), this_machine(), settings.constraint, settings.box_lo, settings.box_hi};
 }
 
-fs::path points_path(const fs::path& folder) {
-  return folder / "accuracy-and-time.json";
+std::string points_json(const Sweep& sweep) {
+  return text_of(json_of(sweep));
 }
 
-Result<void> store_points(const fs::path& folder, const Sweep& sweep) {
+std::string points_path(const std::string& folder) {
+  return (fs::path(folder) / "accuracy-and-time.json").string();
+}
+
+Result<void> store_points(const std::string& folder, const Sweep& sweep) {
   std::error_code ec;
   fs::create_directories(folder, ec);
   if (ec) return tl::unexpected(file_error(ec.value(), folder, "cannot be made to store measured points in"));
   Json json{{"format", format_name}, {"version", format_version}};
-  json.update(sweep_json(sweep));
-  const std::string text = json_text(json);
+  json.update(json_of(sweep));
+  const std::string text = text_of(json);
   return write_file_atomically(points_path(folder), std::as_bytes(std::span(text)));
 }
 
-Result<Sweep> load_points(const fs::path& folder, const PointsKey& key) {
-  const fs::path path = points_path(folder);
-  const auto json = read_json(path);
-  if (!json) return tl::unexpected(json.error());
-  const Json version = json->contains("version") ? (*json)["version"] : Json();
+Result<Sweep> load_points(const std::string& folder, const PointsKey& key) {
+  const std::string path = points_path(folder);
+  const Json json = TRY(read_json(path));
+  const Json version = json.contains("version") ? json["version"] : Json();
   if (version != Json(format_version)) {
-    return hal::fail(ErrorCode::stale, path.string(),
+    return hal::fail(ErrorCode::stale, path,
                      fmt::format("has format version {}, expected {}", version.dump(), format_version));
   }
-  auto sweep = sweep_from(*json, path.string());
-  if (!sweep) return sweep;
-  if (auto fits = check(path, *sweep, key); !fits) return tl::unexpected(std::move(fits.error()));
+  Sweep sweep;
+  try {
+    const Reader reader{json};
+    members(reader, sweep);
+    check_whole(sweep);
+  } catch (const std::exception& error) {
+    return hal::fail(ErrorCode::bad_format, path,
+                     fmt::format("does not hold measured points as this program stores them ({}); run `compueye "
+                                 "pareto` again",
+                                 error.what()));
+  }
+  TRY(check_fits(path, sweep, key));
   return sweep;
 }
 

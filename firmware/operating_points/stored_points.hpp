@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <string>
 
 #include "firmware/operating_points/measured_points.hpp"
 #include "hal/result.hpp"
@@ -18,14 +18,18 @@ struct PointsKey {
 };
 [[nodiscard]] PointsKey points_key(const Board& board, const recon::Response& living);
 
-/// "<folder>/accuracy-and-time.json"
-[[nodiscard]] std::filesystem::path points_path(const std::filesystem::path& folder);
+/// Every figure of a sweep as one JSON object, two blanks of indentation, one line end: what `pareto --json` prints.
+[[nodiscard]] std::string points_json(const Sweep& sweep);
 
-/// Stores atomically, replacing what is there; makes the folder. Errors: those of AtomicFile.
-[[nodiscard]] hal::Result<void> store_points(const std::filesystem::path& folder, const Sweep& sweep);
+/// "<folder>/accuracy-and-time.json"
+[[nodiscard]] std::string points_path(const std::string& folder);
+
+/// Stores atomically, replacing what is there; makes the folder. The file is what points_json() gives with format and
+/// version before it. Errors: those of AtomicFile.
+[[nodiscard]] hal::Result<void> store_points(const std::string& folder, const Sweep& sweep);
 
 /// Errors: not_found (none stored), stale (another response, machine, build or constraint: the sentence says which),
-/// bad_format, io.
-[[nodiscard]] hal::Result<Sweep> load_points(const std::filesystem::path& folder, const PointsKey& key);
+/// bad_format (a member that is missing, of another type, or has a name that this program does not know), io.
+[[nodiscard]] hal::Result<Sweep> load_points(const std::string& folder, const PointsKey& key);
 
 }  // namespace compueye::firmware

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "firmware/eye/board.hpp"
-#include "firmware/operating_points/curve.hpp"
+#include "firmware/operating_points/measured_points.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {

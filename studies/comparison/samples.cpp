@@ -12,7 +12,7 @@
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/response_file.hpp"
-#include "firmware/operating_points/trial.hpp"
+#include "firmware/operating_points/deadline_choice.hpp"
 #include "hal/clock.hpp"
 #include "hal/try.hpp"
 #include "sim/random.hpp"

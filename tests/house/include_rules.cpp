@@ -56,8 +56,10 @@ constexpr std::array<FolderRule, 26> rules{{
      "firmware/sinks: hal, firmware/files and OS headers"},
     {"firmware/text", "hal firmware/text", "fmt", false, none, false, "firmware/text: hal and fmt"},
     {"firmware/eye", any, any, true, none, false, "firmware/eye: what a board makes of an eye"},
-    {"firmware/operating_points", any, any, true, none, false,
-     "firmware/operating_points: what a deadline chooses from"},
+    {"firmware/operating_points",
+     "hal recon recon/core firmware/eye firmware/files firmware/pipeline firmware/text firmware/operating_points",
+     "fmt nlohmann-json xxhash", false, none, false,
+     "firmware/operating_points: hal, recon, firmware/eye, files, text and pipeline, nlohmann-json, xxhash, fmt"},
     {"firmware/app", any, any, true, none, false, "firmware/app wires everything"},
     {"studies", any, any, true, none, false, "studies measure an eye instead of running it"},
 

@@ -11,12 +11,12 @@
 #include <utility>
 
 #include "firmware/app/commands/pareto_report.hpp"
+#include "firmware/app/report/json_report.hpp"
 #include "firmware/app/report/progress_reporter.hpp"
 #include "firmware/app/run/stop_signals.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/file_error.hpp"
 #include "firmware/operating_points/stored_points.hpp"
-#include "firmware/operating_points/sweep_json.hpp"
 #include "hal/clock.hpp"
 #include "hal/try.hpp"
 #include "studies/accuracy_and_time/sweep.hpp"
@@ -111,7 +111,7 @@ Result<void> run_pareto(const ParetoRequest& request) {
   Sweep measured = TRY(std::move(swept));
   store(board, measured);
   // Printed first: a file that cannot be written must not cost the figures.
-  TRY(print_text(request.json ? json_text(sweep_json(measured)) : sweep_text(measured)));
+  TRY(print_text(request.json ? points_json(measured) : sweep_text(measured)));
   return write_files(request.out, measured);
 }
 

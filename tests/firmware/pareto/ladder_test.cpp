@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "firmware/operating_points/deadline_watch.hpp"
 #include "firmware/operating_points/point_ladder.hpp"
 #include "tests/firmware/pareto/some_sweep.hpp"
 #include "tests/memory/allocation_counter.hpp"

@@ -6,7 +6,6 @@
 #include <limits>
 #include <string>
 
-#include "firmware/operating_points/sweep_json.hpp"
 #include "tests/firmware/pareto/some_sweep.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 
@@ -38,7 +37,7 @@ TEST_CASE("points come back as they were stored") {
   REQUIRE(store_points(folder / "made", sweep).has_value());
   const auto loaded = load_points(folder / "made", key_of(sweep));
   REQUIRE_MESSAGE(loaded.has_value(), loaded.error().text());
-  CHECK(sweep_json(*loaded) == sweep_json(sweep));
+  CHECK(points_json(*loaded) == points_json(sweep));
   CHECK(loaded->points[1].curve == sweep.points[1].curve);
   CHECK(loaded->points[1].levels[0].quality.mean.psnr_db == std::numeric_limits<double>::infinity());
 }
