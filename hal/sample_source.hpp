@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hal/accounting.hpp"
+#include "hal/counter.hpp"
 #include "hal/result.hpp"
 #include "hal/sample_block.hpp"
 
@@ -19,7 +20,6 @@ struct SourceDescription {
   int bits = 0;          ///< depth of the codes
   double frame_rate_hz = 0.0;
   std::vector<std::int32_t> ommatidium_of_channel;  ///< M entries: channel -> ommatidium (row of A)
-  std::vector<std::int32_t> sample_offset_ns;       ///< M entries: when a channel is sampled after the frame's t_ns
 };
 
 /// A stream of frames of samples: an eye on a bus, a simulated eye or a recording.
@@ -51,12 +51,17 @@ class SampleSource {
   /// Since the last start(): produced by the device = delivered by read() + dropped by reason.
   [[nodiscard]] FrameAccount account() const noexcept { return do_account(); }
 
+  /// What else this kind of source counts, since the last start(): what went wrong and was mended. Always the same
+  /// rows in the same order, none where there is nothing to tell. Not for the frame path: it allocates.
+  [[nodiscard]] std::vector<Counter> counters() const { return do_counters(); }
+
  private:
   [[nodiscard]] virtual const SourceDescription& do_describe() const noexcept = 0;
   virtual Result<void> do_start() = 0;
   virtual Result<SampleBlock> do_read(std::int64_t deadline_ns) = 0;
   virtual void do_stop() noexcept = 0;
   [[nodiscard]] virtual FrameAccount do_account() const noexcept = 0;
+  [[nodiscard]] virtual std::vector<Counter> do_counters() const { return {}; }
 
   bool started_ = false;
 };

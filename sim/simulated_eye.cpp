@@ -66,8 +66,7 @@ SimulatedEye::SimulatedEye(SimulatedEyeSettings settings, Sensor sensor, std::ve
                   channels,
                   settings_.sensor.bits,
                   settings_.frame_rate_hz,
-                  std::vector<std::int32_t>(m),
-                  std::vector<std::int32_t>(m, 0)};
+                  std::vector<std::int32_t>(m)};
   std::iota(description_.ommatidium_of_channel.begin(), description_.ommatidium_of_channel.end(), 0);
   levels_lsb_.resize(m);
   codes_.resize(m);

@@ -57,7 +57,7 @@ class DeviceSource final : public hal::SampleSource {
   DeviceSource& operator=(const DeviceSource&) = delete;
   ~DeviceSource() override;
 
-  /// Since the last start(), like account().
+  /// counters(), by what they are.
   [[nodiscard]] FailureCounters failures() const noexcept;
   [[nodiscard]] MachineState state() const noexcept { return machine_.state(); }
   [[nodiscard]] const protocol::DeviceDescriptor& descriptor() const noexcept { return *descriptor_; }
@@ -73,6 +73,7 @@ class DeviceSource final : public hal::SampleSource {
   hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override;
   void do_stop() noexcept override;
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override;
+  [[nodiscard]] std::vector<hal::Counter> do_counters() const override { return failures().counters(); }
   [[nodiscard]] std::optional<hal::SampleBlock> read_stream(std::int64_t deadline_ns);
   void saw_frame(hal::SampleBlock& block) noexcept;
   void fail_quiet();

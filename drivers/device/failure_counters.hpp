@@ -3,58 +3,79 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <string_view>
+#include <vector>
+
+#include "hal/counter.hpp"
 
 namespace compueye::device {
 
-/// Everything that can go wrong between an eye and its source, and what was done about it. One counter each.
+/// Everything that can go wrong between an eye and its source, and what was done about it: a row a counter, of its name
+/// and its meaning. docs/faults.md says which ones move when.
+#define COMPUEYE_FAILURES(ROW)                                                                    \
+  /* The connection */                                                                            \
+  ROW(unplugged, "the device went away while it was open")                                        \
+  ROW(absent, "it was looked for and not there")                                                  \
+  ROW(open_failed, "it was there and could not be opened")                                        \
+  ROW(other_serial, "another eye was in its place")                                               \
+  ROW(rebooted, "its firmware has started anew (another boot_count)")                             \
+  /* Requests */                                                                                  \
+  ROW(request_timeout, "a request was not answered in the time that a device may take")           \
+  ROW(request_refused, "a request was stalled, or the transport failed")                          \
+  ROW(bad_reply, "a request was answered with what is not a reply")                               \
+  ROW(other_version, "it speaks another major version of the protocol")                           \
+  ROW(other_descriptor, "the same serial with other channels, depth or formats")                  \
+  ROW(wrong_echo, "GET_CONFIG returned another configuration than was set")                       \
+  /* The stream */                                                                                \
+  ROW(silence, "no frame for too long, and no bytes either")                                      \
+  ROW(stream_failed, "the stream's endpoint halted, or the transport failed")                     \
+  ROW(babble, "bytes without end and no frame in them")                                           \
+  /* Its bytes */                                                                                 \
+  ROW(crc_error, "packets or reports whose CRC is wrong")                                         \
+  ROW(garbage, "magic numbers before nonsense, reports of no known kind")                         \
+  ROW(resync, "good packets found again after bytes that were none (USB)")                        \
+  ROW(cut_report, "reports of another length (HID)")                                              \
+  ROW(missing_packet, "packets that never came, by the sequence numbers (USB)")                   \
+  ROW(repeated_part, "samples that had come already")                                             \
+  ROW(late_part, "samples of a frame whose fate was settled")                                     \
+  ROW(other_config, "left over from another configuration, or of a device that has started anew") \
+  ROW(incomplete_frame, "frames delivered with channels missing")                                 \
+  ROW(bad_code, "codes beyond the depth, made invalid")                                           \
+  ROW(doubtful_time, "frames whose time is not to be trusted")                                    \
+  /* What was done */                                                                             \
+  ROW(restart, "the stream was reset")                                                            \
+  ROW(bus_reset, "the device was closed and opened again")                                        \
+  ROW(gave_up, "recovery was given up")
+
 enum class Failure : std::uint8_t {
-  // The connection
-  unplugged,     ///< the device went away while it was open
-  absent,        ///< it was looked for and not there
-  open_failed,   ///< it was there and could not be opened
-  other_serial,  ///< another eye was in its place
-  rebooted,      ///< its firmware has started anew (another boot_count)
-  // Requests
-  request_timeout,   ///< not answered within protocol::control_deadline_ns
-  request_refused,   ///< stalled, or the transport failed
-  bad_reply,         ///< answered with what is not a reply
-  other_version,     ///< it speaks another major version of the protocol
-  other_descriptor,  ///< the same serial with other channels, depth or formats
-  wrong_echo,        ///< GET_CONFIG returned another configuration than was set
-  // The stream
-  silence,        ///< no frame for DeviceSettings::silence_ns, and no bytes either
-  stream_failed,  ///< the stream's endpoint halted, or the transport failed
-  babble,         ///< bytes without end and no frame in them
-  // Its bytes
-  crc_error,         ///< packets or reports whose CRC is wrong
-  garbage,           ///< magic numbers before nonsense, reports of no known kind
-  resync,            ///< good packets found again after bytes that were none (USB)
-  cut_report,        ///< reports of another length
-  missing_packet,    ///< by the sequence numbers (USB)
-  repeated_part,     ///< samples that had come already
-  late_part,         ///< of a frame whose fate was settled
-  other_config,      ///< left over from another configuration, or of a device that has started anew
-  incomplete_frame,  ///< delivered with channels missing
-  bad_code,          ///< codes beyond the depth, made invalid
-  doubtful_time,     ///< frames whose time is not to be trusted
-  // What was done
-  restart,    ///< the stream was reset
-  bus_reset,  ///< the device was closed and opened again
-  gave_up,    ///< recovery was given up
+#define COMPUEYE_FAILURE(name, meaning) name,
+  COMPUEYE_FAILURES(COMPUEYE_FAILURE)
+#undef COMPUEYE_FAILURE
 };
-inline constexpr std::size_t failure_count = 28;
 
-[[nodiscard]] std::string_view name(Failure failure) noexcept;
+/// In the order of Failure; their counts are 0.
+inline constexpr std::array failure_rows{
+#define COMPUEYE_FAILURE(name, meaning) hal::Counter{#name, meaning},
+    COMPUEYE_FAILURES(COMPUEYE_FAILURE)
+#undef COMPUEYE_FAILURE
+};
+#undef COMPUEYE_FAILURES
 
-struct FailureCounters {
-  std::array<std::uint64_t, failure_count> counts{};
+/// How often each has happened.
+class FailureCounters {
+ public:
+  std::uint64_t& operator[](Failure failure) noexcept { return counts_[static_cast<std::size_t>(failure)]; }
+  std::uint64_t operator[](Failure failure) const noexcept { return counts_[static_cast<std::size_t>(failure)]; }
 
-  std::uint64_t& operator[](Failure failure) noexcept { return counts[static_cast<std::size_t>(failure)]; }
-  std::uint64_t operator[](Failure failure) const noexcept { return counts[static_cast<std::size_t>(failure)]; }
-  /// "silence 2, restart 2": those that are not 0; "none" when all are.
-  [[nodiscard]] std::string text() const;
+  /// All of them, with their names.
+  [[nodiscard]] std::vector<hal::Counter> counters() const {
+    std::vector<hal::Counter> counters(failure_rows.begin(), failure_rows.end());
+    for (std::size_t k = 0; k < counters.size(); ++k) counters[k].count = counts_[k];
+    return counters;
+  }
+
+ private:
+  std::array<std::uint64_t, failure_rows.size()> counts_{};
 };
 
 }  // namespace compueye::device

@@ -129,7 +129,6 @@ hal::SourceDescription DeviceDescriptor::source_description(std::string_view bac
   description.bits = bits;
   description.frame_rate_hz = frame_rate_hz;
   description.ommatidium_of_channel = ommatidium_of_channel;
-  description.sample_offset_ns = sample_offset_ns;
   return description;
 }
 

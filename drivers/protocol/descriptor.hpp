@@ -45,8 +45,8 @@ struct DeviceDescriptor {
   std::uint32_t least_frame_rate_mhz = 1000, most_frame_rate_mhz = 1000;  ///< frames a second times 1000
   std::uint32_t least_exposure_ns = 0, most_exposure_ns = 0;
   std::vector<std::int32_t> ommatidium_of_channel;  ///< M entries: a permutation of 0 .. M-1
-  std::vector<std::int32_t> sample_offset_ns;       ///< M entries >= 0: when a channel is sampled after t_ns
-  std::vector<IlluminatorEntry> illuminators;       ///< at most 255
+  std::vector<std::int32_t> sample_offset_ns;  ///< M entries >= 0: when after t_ns. For people; nothing corrects for it
+  std::vector<IlluminatorEntry> illuminators;  ///< at most 255
 
   [[nodiscard]] bool offers(SampleFormat format) const noexcept;
   [[nodiscard]] PacketLimits packet_limits() const noexcept { return {channels, most_payload}; }

@@ -61,9 +61,7 @@ std::string complaint(const RecordingHeader& header) {
     return "settings have " + std::to_string(header.settings.size()) + " bytes, expected at most 65535";
   }
   const auto channels = static_cast<std::size_t>(s.channels);
-  if (s.ommatidium_of_channel.size() != channels || s.sample_offset_ns.size() != channels) {
-    return "does not have one entry a channel in its channel map and sample offsets";
-  }
+  if (s.ommatidium_of_channel.size() != channels) return "does not have one entry a channel in its channel map";
   return map_complaint(s.ommatidium_of_channel);
 }
 
@@ -102,12 +100,11 @@ hal::Result<std::vector<std::byte>> serialise(const RecordingHeader& header) {
     std::memcpy(to, text->data(), text->size());
     to += text->size();
   }
-  for (const std::vector<std::int32_t>* numbers : {&s.ommatidium_of_channel, &s.sample_offset_ns}) {
-    for (const std::int32_t number : *numbers) {
-      store_little(to, number);
-      to += 4;
-    }
+  for (const std::int32_t ommatidium : s.ommatidium_of_channel) {
+    store_little(to, ommatidium);
+    to += 4;
   }
+  to += 4 * s.ommatidium_of_channel.size();  // the sample offsets, all 0
   store_little(to, protocol::crc32c(std::span(bytes).first(bytes.size() - crc_bytes)));
   return bytes;
 }
@@ -173,12 +170,10 @@ hal::Result<RecordingHeader> parse_header(std::span<const std::byte> bytes, std:
   take(s.serial, texts.serial);
   take(s.firmware, texts.firmware);
   take(header.settings, texts.settings);
-  for (std::vector<std::int32_t>* numbers : {&s.ommatidium_of_channel, &s.sample_offset_ns}) {
-    numbers->resize(static_cast<std::size_t>(s.channels));
-    for (std::int32_t& number : *numbers) {
-      number = load_little<std::int32_t>(from);
-      from += 4;
-    }
+  s.ommatidium_of_channel.resize(static_cast<std::size_t>(s.channels));
+  for (std::int32_t& ommatidium : s.ommatidium_of_channel) {
+    ommatidium = load_little<std::int32_t>(from);
+    from += 4;
   }
   const std::string what = complaint(header);
   const std::byte unused[] = {bytes[20], bytes[21], bytes[22], bytes[23], bytes[43], bytes[46], bytes[47]};

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "drivers/recording/recording_writer.hpp"
 #include "drivers/recording/waiting_frames.hpp"
@@ -68,6 +69,7 @@ class RecordingSource final : public hal::SampleSource {
   hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override;
   void do_stop() noexcept override;
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override { return source_.account(); }
+  [[nodiscard]] std::vector<hal::Counter> do_counters() const override { return source_.counters(); }
 
   void keep(const hal::SampleBlock& block) noexcept;
   void write_waiting() noexcept;

@@ -50,4 +50,13 @@ hal::Result<hal::SampleBlock> ReplaySource::do_read(std::int64_t deadline_ns) {
   return block;
 }
 
+std::vector<hal::Counter> ReplaySource::do_counters() const {
+  const RecordingDamage& damage = recording_.damage();
+  return {{"damaged_stretches", "pieces of the file between whole blocks that are none", damage.stretches},
+          {"damaged_bytes", "bytes in them", damage.bytes},
+          {"damaged_frames", "frames lost in them", damage.blocks},
+          {"torn_bytes", "of a last block that was never finished", damage.torn_bytes},
+          {"unrecorded_frames", "frames that the recording was too slow for", recording_.unrecorded()}};
+}
+
 }  // namespace compueye::recording

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "drivers/recording/recording_reader.hpp"
 #include "hal/clock.hpp"
@@ -37,6 +38,7 @@ class ReplaySource final : public hal::SampleSource {
   hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override;
   void do_stop() noexcept override { next_.reset(); }
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override { return account_; }
+  [[nodiscard]] std::vector<hal::Counter> do_counters() const override;
 
   RecordingReader recording_;
   ReplayPace pace_;

@@ -158,6 +158,7 @@ RunSummary Pipeline::run(const std::atomic<bool>& stop) {
     return summary;
   }
   if (auto started = s.source.start(); !started) {
+    summary.source_counters = s.source.counters();
     note_failure(summary, Ending::source_failed, std::move(started.error()));
     // Nothing was written, so there is nothing to tell about closing it that the user does not know already.
     static_cast<void>(s.sink.close());
@@ -180,6 +181,7 @@ RunSummary Pipeline::run(const std::atomic<bool>& stop) {
   summary.wall_ns = s.clock.now_ns() - begin_ns;
 
   fill(summary, *stages, s.source.account());
+  summary.source_counters = s.source.counters();
   s.source.stop();
   auto closed = s.sink.close();
   summary.ending = control.ending();

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "firmware/pipeline/time_histogram.hpp"
 #include "hal/accounting.hpp"
+#include "hal/counter.hpp"
 #include "hal/result.hpp"
 #include "recon/core/parts/frame_info.hpp"
 
@@ -56,6 +58,7 @@ struct RunSummary {
   hal::FrameAccount frames;  ///< produced at the source = delivered to the sink + dropped by reason
   StageAccounts stages;
   HealthCounters health;
+  std::vector<hal::Counter> source_counters;  ///< SampleSource::counters()
 
   TimeStatistics correct;             ///< correction of one frame
   TimeStatistics solve;               ///< reconstruction of one frame, invalid ones included

@@ -98,7 +98,6 @@ Result<std::vector<FrameSequence>> take_frames(const Board& board, const std::ve
   description.bits = board.sensor.bits;
   description.ommatidium_of_channel.resize(channels);
   std::iota(description.ommatidium_of_channel.begin(), description.ommatidium_of_channel.end(), 0);
-  description.sample_offset_ns.assign(channels, 0);
   Correction correction = TRY(Correction::create(correction_settings(noisy, sees), description));
   std::vector<std::uint8_t> valid(channels, 1);
   for (const int dead : board.sensor.dead) valid[static_cast<std::size_t>(dead)] = 0;

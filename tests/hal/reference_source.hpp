@@ -25,10 +25,7 @@ class ReferenceSource : public SampleSource {
     description_.channels = channels;
     description_.bits = bits;
     description_.frame_rate_hz = 1e9 / static_cast<double>(period_ns);
-    for (int c = 0; c < channels; ++c) {
-      description_.ommatidium_of_channel.push_back((c * 5) % channels);
-      description_.sample_offset_ns.push_back(c * 1000);
-    }
+    for (int c = 0; c < channels; ++c) description_.ommatidium_of_channel.push_back((c * 5) % channels);
   }
 
   void lose_frames(int frames) { to_lose_ = static_cast<std::uint64_t>(frames); }

@@ -8,7 +8,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/clock.hpp"
@@ -46,7 +48,7 @@ class ContractTest {
     for (auto part :
          {&ContractTest::description, &ContractTest::order_of_calls, &ContractTest::stream, &ContractTest::restart,
           &ContractTest::deadline, &ContractTest::slow_reader, &ContractTest::lost_frames, &ContractTest::lost_channel,
-          &ContractTest::disconnection, &ContractTest::end, &ContractTest::heap}) {
+          &ContractTest::disconnection, &ContractTest::end, &ContractTest::heap, &ContractTest::counters}) {
       clock_ = test_.make_clock ? test_.make_clock() : std::make_unique<VirtualClock>();
       source_ = test_.make(*clock_);
       (this->*part)();
@@ -137,7 +139,6 @@ class ContractTest {
     expect(std::isfinite(d.frame_rate_hz) && d.frame_rate_hz >= 0.0, "the frame rate is not a rate");
     const auto channels = static_cast<std::size_t>(d.channels);
     expect(d.ommatidium_of_channel.size() == channels, "the channel map does not have one entry a channel");
-    expect(d.sample_offset_ns.size() == channels, "the sample offsets do not have one entry a channel");
     std::vector<std::int32_t> sorted = d.ommatidium_of_channel;
     std::sort(sorted.begin(), sorted.end());
     expect(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end(), "the channel map repeats an ommatidium");
@@ -152,9 +153,25 @@ class ContractTest {
     expect(after.backend == before.backend && after.serial == before.serial && after.firmware == before.firmware &&
                after.channels == before.channels && after.bits == before.bits &&
                after.frame_rate_hz == before.frame_rate_hz &&
-               after.ommatidium_of_channel == before.ommatidium_of_channel &&
-               after.sample_offset_ns == before.sample_offset_ns,
+               after.ommatidium_of_channel == before.ommatidium_of_channel,
            "the description changed in a run");
+  }
+
+  void counters() {
+    part_ = "counters";
+    const std::vector<Counter> before = source_->counters();
+    std::set<std::string_view> names;
+    for (const Counter& each : before) {
+      expect(!each.name.empty() && !each.meaning.empty(), "a counter has no name or no meaning");
+      expect(names.insert(each.name).second, "two counters are called " + std::string(each.name));
+    }
+    start();
+    for (int i = 0; i < 3; ++i) next();
+    const std::vector<Counter> after = source_->counters();
+    source_->stop();
+    expect(std::equal(before.begin(), before.end(), after.begin(), after.end(),
+                      [](const Counter& a, const Counter& b) { return a.name == b.name; }),
+           "the counters are other ones after a run");
   }
 
   void expect_usage(const Error& error, const std::string& call) {

@@ -63,7 +63,6 @@ TEST_CASE("the eye describes itself") {
   CHECK(about.frame_rate_hz == 100.0);
   REQUIRE(about.ommatidium_of_channel.size() == 64);
   CHECK(about.ommatidium_of_channel[63] == 63);
-  CHECK(about.sample_offset_ns == std::vector<std::int32_t>(64, 0));
 }
 
 TEST_CASE("without noise the codes are the rounded signals of the optics") {

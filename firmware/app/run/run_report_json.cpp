@@ -73,6 +73,12 @@ Json health(const RunSummary& s) {
           {"masked_channels_max", s.masked_max}};
 }
 
+Json counters_json(const std::vector<hal::Counter>& counters) {
+  Json json = Json::object();
+  for (const hal::Counter& each : counters) json[std::string(each.name)] = each.count;
+  return json;
+}
+
 Json last_frame(const RunReport& report) {
   const RunSummary& s = report.summary;
   if (!s.last) return nullptr;
@@ -117,6 +123,7 @@ Json report_json(const RunReport& report) {
             {"write_ms", times_json(s.write)},
             {"deadline", deadline_json(report)},
             {"health", health(s)},
+            {"source_counters", counters_json(s.source_counters)},
             {"quality", quality_json(report.quality)},
             {"quality_frames", report.measured},
             {"conventional", quality_json(report.conventional)},

@@ -86,6 +86,7 @@ std::string health_text(const RunSummary& s) {
   add(s.health.config_mismatches, "with another configuration");
   add(s.health.read_timeouts, "reads timed out");
   if (s.masked_max > 0) text += fmt::format("; {} to {} channels masked", s.masked_min, s.masked_max);
+  if (const std::string counters = hal::text_of(s.source_counters); !counters.empty()) text += "\nsource: " + counters;
   return text + "\n";
 }
 

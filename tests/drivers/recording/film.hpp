@@ -49,11 +49,10 @@ struct Film {
 };
 
 inline RecordingHeader header_of(int channels, int bits) {
-  RecordingHeader header{{"usb", "CE-7", "1.2.3", channels, bits, 250.0, {}, {}}, 1'700'000'000'123'456'789, {}};
+  RecordingHeader header{{"usb", "CE-7", "1.2.3", channels, bits, 250.0, {}}, 1'700'000'000'123'456'789, {}};
   header.settings = "board = a dome\nscene = none";
   header.source.ommatidium_of_channel.resize(static_cast<std::size_t>(channels));
   std::iota(header.source.ommatidium_of_channel.rbegin(), header.source.ommatidium_of_channel.rend(), 0);
-  for (int c = 0; c < channels; ++c) header.source.sample_offset_ns.push_back(250 * c);
   return header;
 }
 

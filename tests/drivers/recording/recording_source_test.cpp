@@ -32,6 +32,7 @@ class RecordedEye final : public hal::SampleSource {
   hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override { return tee_->read(deadline_ns); }
   void do_stop() noexcept override { tee_->stop(); }
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override { return tee_->account(); }
+  [[nodiscard]] std::vector<hal::Counter> do_counters() const override { return tee_->counters(); }
 
   std::unique_ptr<sim::SimulatedEye> eye_;
   std::unique_ptr<RecordingSource> tee_;

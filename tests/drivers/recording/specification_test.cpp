@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "drivers/protocol/crc32c.hpp"
+#include "drivers/protocol/little_endian.hpp"
 #include "tests/drivers/recording/film_checks.hpp"
 #include "tests/drivers/specification_page.hpp"
 
@@ -97,4 +99,16 @@ TEST_CASE("the page's example is what the writer writes, and is read as the page
   CHECK(reads_back(*reader, film, {false, false}));
   CHECK(reader->account().produced == 5);
   CHECK(reader->end()->at_ns == 17'000'005);
+}
+
+TEST_CASE("sample offsets of a recording are passed over") {
+  const Film film = example();
+  Bytes bytes = recorded(film);
+  const auto header = header_bytes_of(bytes);
+  const std::size_t crc_at = header - sizeof(std::uint32_t);
+  protocol::store_little(bytes.data() + crc_at - sizeof(std::int32_t), std::int32_t{500});  // of the last channel
+  protocol::store_little(bytes.data() + crc_at, protocol::crc32c(std::span(bytes).first(crc_at)));
+  auto reader = reader_of(bytes);
+  REQUIRE(reader);
+  CHECK(reads_back(*reader, film, {false, false}));
 }

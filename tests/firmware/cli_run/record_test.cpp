@@ -93,6 +93,9 @@ TEST_CASE("a damaged and torn recording still runs, and the run says what is mis
   CHECK(json["frames"]["delivered"] == 10);
   CHECK(json["frames"]["dropped"]["corrupt"] == 1);
   CHECK(json["frames"]["balanced"] == true);
+  CHECK(json["source_counters"]["damaged_frames"] == 1);
+  CHECK(json["source_counters"]["torn_bytes"] == 99);
+  CHECK(json["source_counters"]["unrecorded_frames"] == 0);
   CHECK(contains(ended.err, "torn tail of 99 bytes from byte " + std::to_string(first + 11 * frame)));
   CHECK(contains(ended.err, "the first at byte " + std::to_string(first + 4 * frame)));
   const auto told = replay(file);

@@ -78,6 +78,7 @@ TEST_CASE("back-pressure loses nothing, whoever is slow") {
 TEST_CASE("frames lost at the source keep their reasons") {
   Rig rig;
   rig.source.length = 30;
+  rig.source.tells = {{"calm", "did not happen", 0}, {"restart", "did", 2}};
   rig.source.script = [](std::uint64_t index) {
     ScriptedFrame frame;
     if (index == 4) frame.lost_before = 3;
@@ -95,6 +96,8 @@ TEST_CASE("frames lost at the source keep their reasons") {
   CHECK(summary.frames.drops(DropReason::device_overrun) == 2);
   CHECK(summary.health.overrun_flags == 1);
   CHECK(rig.sink.frames[4] == 7);
+  CHECK(summary.source_counters.size() == 2);
+  CHECK(compueye::hal::text_of(summary.source_counters) == "restart 2");
 }
 
 TEST_CASE("a frame that lacks more channels than allowed is dropped, a frame that lacks fewer goes on") {
@@ -241,7 +244,9 @@ TEST_CASE("a source that falls silent has failed, short pauses are only counted"
 TEST_CASE("a source or a sink that does not begin leaves the other alone") {
   Rig rig;
   rig.source.may_start = false;
+  rig.source.tells = {{"absent", "not there", 5}};
   RunSummary summary = rig.run();
+  CHECK(compueye::hal::text_of(summary.source_counters) == "absent 5");
   CHECK(summary.ending == Ending::source_failed);
   CHECK(summary.error->text() == "scripted-1: refused to start");
   CHECK(rig.sink.closed == rig.sink.opened);

@@ -21,7 +21,6 @@ SourceDescription eye(int channels, int bits) {
   d.channels = channels;
   d.bits = bits;
   for (int c = 0; c < channels; ++c) d.ommatidium_of_channel.push_back(c);
-  d.sample_offset_ns.assign(static_cast<std::size_t>(channels), 0);
   return d;
 }
 

@@ -15,7 +15,6 @@ ScriptedSource::ScriptedSource(hal::Clock& clock, int channels)
   for (int c = 0; c < channels; ++c) {
     // Reversed, so that a map that is not applied shows.
     description.ommatidium_of_channel.push_back(channels - 1 - c);
-    description.sample_offset_ns.push_back(0);
   }
 }
 

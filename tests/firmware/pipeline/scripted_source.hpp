@@ -40,6 +40,7 @@ class ScriptedSource final : public hal::SampleSource {
   bool may_start = true;
   bool lies_about_its_account = false;
   hal::SourceDescription description;
+  std::vector<hal::Counter> tells;  ///< counters()
 
   [[nodiscard]] static std::int32_t code(std::uint64_t frame, std::size_t channel) {
     return static_cast<std::int32_t>((frame * 31 + channel * 7) % 1000 + 10);
@@ -51,6 +52,7 @@ class ScriptedSource final : public hal::SampleSource {
   hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override;
   void do_stop() noexcept override {}
   hal::FrameAccount do_account() const noexcept override;
+  std::vector<hal::Counter> do_counters() const override { return tells; }
   hal::Result<hal::SampleBlock> at_the_end(std::int64_t deadline_ns);
   hal::SampleBlock block(const ScriptedFrame& plan);
 

@@ -143,22 +143,22 @@ void check_account(EyeRig& rig, const ExpectedOutcome& expected) {
   }
 }
 
-std::uint64_t count_of(const FailureCounters& failures, const std::string& counter) {
-  for (std::size_t k = 0; k < failure_count; ++k) {
-    if (name(static_cast<Failure>(k)) == counter) return failures.counts[k];
+std::uint64_t count_of(const std::vector<hal::Counter>& failures, const std::string& counter) {
+  for (const hal::Counter& each : failures) {
+    if (each.name == counter) return each.count;
   }
   FAIL("docs/faults.md names a counter that is not there: " << counter);
   return 0;
 }
 
-void check_counters(const FailureCounters& failures, const ExpectedOutcome& expected) {
+void check_counters(const std::vector<hal::Counter>& failures, const ExpectedOutcome& expected) {
   for (const auto& one_of : expected.counters) {
     std::uint64_t moved = 0;
     for (const std::string& counter : one_of) moved += count_of(failures, counter);
     CAPTURE(one_of.front());
     CHECK(moved > 0);
   }
-  if (expected.counters.empty()) CHECK(failures.text() == "none");
+  if (expected.counters.empty()) CHECK(hal::text_of(failures).empty());
 }
 
 /// All seeds of one row; the longest that it took.
@@ -171,8 +171,8 @@ std::int64_t check_row(const ExpectedOutcome& expected, const FaultScript& scrip
     CAPTURE(seed);
     Conversation conversation(script, bus, seed);
     const Ending ending = conversation.play();
-    const FailureCounters failures = conversation.rig().source().failures();
-    CAPTURE(failures.text());
+    const std::vector<hal::Counter> failures = conversation.rig().source().counters();
+    CAPTURE(hal::text_of(failures));
     CHECK(ending.outcome == expected.outcome);
     CHECK(ending.after_ms <= expected.bound_ms);
     check_account(conversation.rig(), expected);

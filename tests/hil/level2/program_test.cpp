@@ -163,6 +163,9 @@ TEST_CASE("program: a run goes on when the eye is plugged in again") {
   // The first frame of a device that has started anew has no time to compare with.
   CHECK(json["health"]["untrusted_times"].get<int>() == 1);
   CHECK(json["health"]["config_mismatches"].get<int>() == 0);
+  CHECK(json["source_counters"]["unplugged"].get<int>() == 1);
+  CHECK(json["source_counters"]["rebooted"].get<int>() == 1);
+  CHECK(json["source_counters"]["gave_up"].get<int>() == 0);
   check_balanced(json["frames"]);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 struct SoakResult {
   hal::FrameAccount account;
-  FailureCounters failures;
+  std::string failures;
   std::uint64_t made = 0;  // by the device
   std::uint64_t incidents = 0;
   std::int64_t worst_outage_ns = 0;  // from one frame to the next
@@ -67,7 +67,7 @@ SoakResult soak(EmulatedBus bus, std::uint64_t blocks, std::uint64_t seed) {
   }
   rig.source().stop();
   result.account = rig.source().account();
-  result.failures = rig.source().failures();
+  result.failures = hal::text_of(rig.source().counters());
   result.made = rig.shown.made();
   return result;
 }
@@ -98,7 +98,7 @@ void soak_both(std::uint64_t blocks, std::uint64_t seed) {
     MESSAGE((bus == EmulatedBus::hid ? "hid: " : "usb: ")
             << result.made << " blocks of 16 samples made in " << result.incidents << " incidents, "
             << result.account.delivered << " delivered" << drops << "; unaccounted " << unaccounted(result)
-            << "; longest outage " << result.worst_outage_ns / ms << " ms; " << result.failures.text() << "; "
+            << "; longest outage " << result.worst_outage_ns / ms << " ms; " << result.failures << "; "
             << seconds.count() << " s");
   }
 }

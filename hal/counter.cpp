@@ -1,0 +1,15 @@
+#include "hal/counter.hpp"
+
+namespace compueye::hal {
+
+std::string text_of(std::span<const Counter> counters) {
+  std::string text;
+  for (const Counter& each : counters) {
+    if (each.count == 0) continue;
+    if (!text.empty()) text += ", ";
+    text += std::string(each.name) + ' ' + std::to_string(each.count);
+  }
+  return text;
+}
+
+}  // namespace compueye::hal
