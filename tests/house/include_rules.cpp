@@ -61,7 +61,11 @@ constexpr std::array<FolderRule, 26> rules{{
      "fmt nlohmann-json xxhash", false, none, false,
      "firmware/operating_points: hal, recon, firmware/eye, files, text and pipeline, nlohmann-json, xxhash, fmt"},
     {"firmware/app", any, any, true, none, false, "firmware/app wires everything"},
-    {"studies", any, any, true, none, false, "studies measure an eye instead of running it"},
+    {"studies",
+     "hal recon recon/core calib calib/eye_file sim drivers/protocol drivers/transport drivers/device "
+     "drivers/illuminator drivers/recording firmware/pipeline firmware/files firmware/sinks firmware/text firmware/eye "
+     "firmware/operating_points studies",
+     "fmt", true, none, false, "studies: everything but firmware/app and the bare metal, fmt and OS headers"},
 
     {"tests", any, any, true, none, false, "tests may include everything"},
     {"bench", any, any, true, none, false, "bench may include everything"},

@@ -32,7 +32,8 @@ std::string what_goes_with_what() {
   }
   for (const auto& solver : recon::solver_names()) {
     rows += "| `" + std::string(solver.name) + "` |";
-    for (const auto& constraint : recon::constraint_names()) rows += ' ' + bases_of(solver.kind, constraint.kind) + " |";
+    for (const auto& constraint : recon::constraint_names())
+      rows += ' ' + bases_of(solver.kind, constraint.kind) + " |";
     rows += '\n';
   }
   return head + '\n' + rule + '\n' + rows;
