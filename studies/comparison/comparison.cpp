@@ -14,7 +14,9 @@
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/penalty_rule.hpp"
 #include "recon/setup/quantised_response.hpp"
+#include "recon/solver_table.hpp"
 #include "studies/comparison/samples.hpp"
+#include "studies/named_kinds.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -203,6 +205,28 @@ Result<Comparison> head_of(const Board& board, const CompareOptions& options, Co
 }
 
 }  // namespace
+
+Result<std::vector<Contender>> contenders(const CompareOptions& options, recon::ConstraintKind of_board) {
+  const auto solvers = TRY(kinds_of("--solvers", options.solvers, recon::solver_names()));
+  const auto bases = TRY(kinds_of("--bases", options.bases, recon::basis_names()));
+  recon::ConstraintKind wanted = of_board;
+  if (!options.constraint.empty()) {
+    wanted = TRY(kinds_of("--constraint", {options.constraint}, recon::constraint_names())).front();
+  }
+  std::vector<Contender> all;
+  for (const recon::BasisKind basis : bases) {
+    for (const recon::SolverKind solver : solvers) {
+      for (const recon::ConstraintKind constraint : {wanted, recon::ConstraintKind::none}) {
+        if (!recon::supports(solver, basis, constraint)) continue;
+        all.push_back({solver, basis, constraint});
+        break;
+      }
+    }
+  }
+  if (!all.empty()) return all;
+  return hal::fail(hal::ErrorCode::usage, "--solvers",
+                   "and --bases leave nothing to compare; `compueye reconstruct --help` says what goes with what");
+}
 
 Result<Comparison> compare(const Board& board, const CompareOptions& options, const hal::Clock& clock,
                            const recon::Progress& progress) {

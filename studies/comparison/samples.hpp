@@ -8,7 +8,7 @@
 #include "hal/result.hpp"
 #include "recon/response.hpp"
 #include "recon/setup/factor.hpp"
-#include "studies/comparison/contenders.hpp"
+#include "studies/comparison/comparison.hpp"
 
 namespace compueye::firmware {
 

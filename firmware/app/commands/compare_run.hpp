@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "hal/result.hpp"
-#include "studies/comparison/contenders.hpp"
+#include "studies/comparison/comparison.hpp"
 
 namespace compueye::firmware {
 
