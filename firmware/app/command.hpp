@@ -1,25 +1,40 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
 
+#include "firmware/app/option_list.hpp"
+#include "firmware/app/session.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
 
-/// What the chosen subcommand does once the whole command line is understood.
-using Action = std::function<hal::Result<void>()>;
+/// What a subcommand does once the whole command line is understood.
+using Action = std::function<hal::Result<void>(Session&)>;
 
-// Each adds its subcommand, with an example in its --help, and sets `chosen` when it is the one.
-void add_response_command(CLI::App& app, Action& chosen);
-void add_reconstruct_command(CLI::App& app, Action& chosen);
-void add_inspect_command(CLI::App& app, Action& chosen);
-void add_simulate_command(CLI::App& app, Action& chosen);
-void add_run_command(CLI::App& app, Action& chosen);
-void add_compare_command(CLI::App& app, Action& chosen);
-void add_pareto_command(CLI::App& app, Action& chosen);
-void add_devices_command(CLI::App& app, Action& chosen);
-void add_record_command(CLI::App& app, Action& chosen);
-void add_replay_command(CLI::App& app, Action& chosen);
+/// A subcommand, as a row of command_list.cpp.
+struct Command {
+  std::string_view name;
+  std::string_view summary;
+  OnSignal on_signal = OnSignal::ends_the_process;
+  /// Adds the command's options, and returns what is done with what they were set to.
+  Action (*declare)(OptionList& options) = nullptr;
+  /// What --help says below the options; it ends in examples.
+  std::string (*footer)() = nullptr;
+};
+
+/// Every subcommand, in the order of --help.
+[[nodiscard]] std::span<const Command* const> commands() noexcept;
+
+/// The action of a command that is a function of what it was asked for.
+template <class Request, class Function>
+[[nodiscard]] Action action_of(std::shared_ptr<Request> request, Function function) {
+  return [request = std::move(request), function](Session& session) { return function(*request, session); };
+}
 
 }  // namespace compueye::firmware

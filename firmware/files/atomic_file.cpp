@@ -154,6 +154,11 @@ void AtomicFile::discard() noexcept {
   if (replaces_) ::unlink(partial_.c_str());
 }
 
+hal::Result<void> try_output(const std::string& path) {
+  if (path.empty()) return {};
+  return AtomicFile::create(path).map([](const AtomicFile&) {});
+}
+
 hal::Result<void> write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   auto file = AtomicFile::create(path);
   if (!file) return tl::unexpected(std::move(file.error()));

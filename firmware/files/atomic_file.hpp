@@ -66,6 +66,10 @@ class AtomicFile {
   bool replaces_ = true;
 };
 
+/// Whether a file can be made at `path`, so that it is known before long work and not after it. Nothing stays of the
+/// trial; an empty path is no file, and fine. Errors: those of AtomicFile::create().
+[[nodiscard]] hal::Result<void> try_output(const std::string& path);
+
 /// create, write, commit.
 [[nodiscard]] hal::Result<void> write_file_atomically(const std::filesystem::path& path,
                                                       std::span<const std::byte> bytes);

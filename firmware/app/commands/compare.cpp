@@ -1,39 +1,95 @@
-#include "firmware/app/commands/compare_run.hpp"
+#include <fmt/format.h>
 
+#include <cmath>
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
 
 #include "firmware/app/command.hpp"
-#include "firmware/app/options/json_failure.hpp"
+#include "firmware/app/commands/compare_report.hpp"
+#include "firmware/eye/board.hpp"
 #include "firmware/eye/scene_choice.hpp"
+#include "firmware/files/atomic_file.hpp"
+#include "hal/try.hpp"
+#include "recon/worker_threads.hpp"
+#include "studies/comparison/comparison.hpp"
+#include "studies/comparison/comparison_files.hpp"
 
 namespace compueye::firmware {
 namespace {
 
-void add_samples(CLI::App& command, CompareRequest& o) {
-  command.add_option("--board", o.board, "folder of the board, such as boards/sim-8x8");
-  command.add_option("--scene", o.scene,
-                     "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
-  command.add_option("--scene-seed", o.scene_seed, "which drawing of a built-in scene (default 0)");
-  command.add_option("--seed", o.seed, "of the noise (default 0)");
-  command.add_flag("--exact", o.exact,
-                   "y = A x + n with the very A that is inverted, instead of the simulated eye: an inverse crime, for "
-                   "figures that others published so");
-  command.add_option("--response", o.response,
-                     "another A for the board's eye, .npy or .mtx (default: the nominal one)");
-  command.add_option("--sigma", o.sigma,
-                     "noise of a sample in white pixels, for lambda by rule (default: the board's); with --exact also "
-                     "the noise that is added");
+using hal::Result;
+
+/// What `compueye compare` was asked for.
+struct CompareRequest : CompareOptions {
+  std::string board;
+  std::string sheet;  ///< empty: none
+  std::string csv;    ///< empty: none
+};
+
+Result<void> not_negative(const char* option, const std::optional<double>& value) {
+  const bool ok = !value || (std::isfinite(*value) && *value >= 0.0 && *value <= 1e12);
+  return need(ok, option, fmt::format("is {}, expected a number from 0 to 1e12", value.value_or(0.0)));
 }
 
-void add_contenders(CLI::App& command, CompareRequest& o) {
-  command.add_option("--solvers", o.solvers, "only these, such as admm,cp (default: all)")->delimiter(',');
-  command.add_option("--bases", o.bases, "only these, such as dct,tv (default: all)")->delimiter(',');
-  command.add_option("--constraint", o.constraint, "none, nonnegative or box (default: the board's)");
-  command.add_option("--iterations", o.iterations,
-                     "of every solver (default: the board's for admm and adm, which have a factor, ten times that for "
-                     "the others)");
-  command.add_option("--threads", o.threads, "that share a frame's work (default: the board's); the same pictures");
-  command.add_option("--lambda", o.lambda, "for every solver and basis (default: by rule, from sigma)");
+Result<void> check(const CompareRequest& o) {
+  TRY(need(!o.board.empty(), "--board", "is missing, for example --board boards/sim-8x8"));
+  TRY(need(o.seed >= 0, "--seed", "is negative, expected 0 or more"));
+  TRY(need(o.scene_seed >= 0, "--scene-seed", "is negative, expected 0 or more"));
+  TRY(not_negative("--sigma", o.sigma));
+  TRY(not_negative("--lambda", o.lambda));
+  TRY(need(!o.iterations || (*o.iterations >= 1 && *o.iterations <= 1'000'000), "--iterations",
+           fmt::format("is {}, expected 1 to 1000000", o.iterations.value_or(0))));
+  return need(!o.threads || (*o.threads >= 1 && *o.threads <= recon::WorkerThreads::most), "--threads",
+              fmt::format("is {}, expected 1 to {}", o.threads.value_or(0), recon::WorkerThreads::most));
+}
+
+/// One frame of samples solved in every way, as a table and a contact sheet. Ctrl-C keeps what was measured: it is
+/// printed and written, and the command succeeds when there is any.
+Result<void> run_compare(const CompareRequest& o, Session& session) {
+  TRY(check(o));
+  const Board board = TRY(load_board(o.board));
+  static_cast<void>(TRY(contenders(o, board.reconstruction.constraint)));
+  TRY(try_output(o.sheet));
+  TRY(try_output(o.csv));
+  auto compared = compare(board, o, session.clock(), session.progress());
+  session.end_progress();
+  const Comparison comparison = TRY(std::move(compared));
+  // Printed first: a file that cannot be written must not cost the figures.
+  TRY(session.print(compare_text(comparison), json_text(compare_json(comparison))));
+  if (!o.csv.empty()) {
+    const std::string csv = comparison_csv(comparison);
+    TRY(write_file_atomically(o.csv, std::as_bytes(std::span(csv))));
+  }
+  return o.sheet.empty() ? Result<void>{} : write_comparison_sheet(o.sheet, comparison);
+}
+
+void add_samples(OptionList& options, CompareRequest& o) {
+  options.add("--board", o.board, "folder of the board, such as boards/sim-8x8");
+  options.add("--scene", o.scene, "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
+  options.add("--scene-seed", o.scene_seed, "which drawing of a built-in scene (default 0)");
+  options.add("--seed", o.seed, "of the noise (default 0)");
+  options.flag("--exact", o.exact,
+               "y = A x + n with the very A that is inverted, instead of the simulated eye: an inverse crime, for "
+               "figures that others published so");
+  options.add("--response", o.response, "another A for the board's eye, .npy or .mtx (default: the nominal one)");
+  options.add("--sigma", o.sigma,
+              "noise of a sample in white pixels, for lambda by rule (default: the board's); with --exact also "
+              "the noise that is added");
+}
+
+void add_contenders(OptionList& options, CompareRequest& o) {
+  options.add("--solvers", o.solvers, "only these, such as admm,cp (default: all)");
+  options.add("--bases", o.bases, "only these, such as dct,tv (default: all)");
+  options.add("--constraint", o.constraint, "none, nonnegative or box (default: the board's)");
+  options.add("--iterations", o.iterations,
+              "of every solver (default: the board's for admm and adm, which have a factor, ten times that for "
+              "the others)");
+  options.add("--threads", o.threads, "that share a frame's work (default: the board's); the same pictures");
+  options.add("--lambda", o.lambda, "for every solver and basis (default: by rule, from sigma)");
 }
 
 std::string footer() {
@@ -49,19 +105,20 @@ std::string footer() {
          "  compueye compare --board boards/sim-80x80 --exact --solvers admm --csv admm.csv";
 }
 
+Action declare(OptionList& options) {
+  auto o = std::make_shared<CompareRequest>();
+  add_samples(options, *o);
+  add_contenders(options, *o);
+  options.add("--sheet", o->sheet, "contact sheet PNG with every picture");
+  options.add("--csv", o->csv, "file with a line a solver and basis");
+  options.json("print one object with every figure and nothing else on stdout");
+  return action_of(o, run_compare);
+}
+
 }  // namespace
 
-void add_compare_command(CLI::App& app, Action& chosen) {
-  auto options = std::make_shared<CompareRequest>();
-  CLI::App* command = app.add_subcommand("compare", "every solver and basis on the same samples");
-  add_samples(*command, *options);
-  add_contenders(*command, *options);
-  command->add_option("--sheet", options->sheet, "contact sheet PNG with every picture");
-  command->add_option("--csv", options->csv, "file with a line a solver and basis");
-  command->add_flag("--json", options->json, "print one object with every figure and nothing else on stdout");
-  command->footer(footer());
-  command->callback(
-      [options, &chosen] { chosen = [options] { return with_json_failure(options->json, run_compare(*options)); }; });
-}
+extern const Command compare_command;
+const Command compare_command{"compare", "every solver and basis on the same samples", OnSignal::ends_in_order, declare,
+                              footer};
 
 }  // namespace compueye::firmware

@@ -1,12 +1,105 @@
-#include "firmware/app/commands/pareto_run.hpp"
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <memory>
+#include <span>
+#include <string>
+#include <system_error>
+#include <utility>
 
 #include "firmware/app/command.hpp"
-#include "firmware/app/options/json_failure.hpp"
+#include "firmware/app/commands/pareto_report.hpp"
+#include "firmware/eye/board.hpp"
+#include "firmware/files/atomic_file.hpp"
+#include "firmware/files/file_error.hpp"
+#include "firmware/operating_points/stored_points.hpp"
+#include "hal/try.hpp"
+#include "studies/accuracy_and_time/sweep.hpp"
+#include "studies/accuracy_and_time/sweep_files.hpp"
 
 namespace compueye::firmware {
 namespace {
+
+using hal::Result;
+
+/// What `compueye pareto` was asked for.
+struct ParetoRequest : SweepOptions {
+  std::string board;
+  std::string out;  ///< folder for CSV and plots; empty: none
+};
+
+/// That the folder takes a file is found out before the long work, not after it.
+Result<void> try_folder(const std::string& folder) {
+  if (folder.empty()) return {};
+  std::error_code ec;
+  std::filesystem::create_directories(folder, ec);
+  if (ec) return tl::unexpected(file_error(ec.value(), folder, "cannot be made"));
+  return try_output(folder + "/pareto.csv");
+}
+
+/// A sweep that was cut short does not push a whole one of the same eye, machine and build aside.
+void store(const Board& board, Sweep& sweep) {
+  const std::filesystem::path folder = board.folder / ".cache";
+  const PointsKey key{sweep.response_hash, sweep.machine, sweep.constraint, sweep.lo, sweep.hi};
+  if (!sweep.cut_short.empty()) {
+    const auto before = load_points(folder, key);
+    if (before && before->cut_short.empty()) {
+      sweep.notes.emplace_back("the points stored before are complete and stay; these are printed and written only");
+      return;
+    }
+  }
+  if (auto stored = store_points(folder, sweep); !stored) {
+    sweep.notes.push_back("the points cannot be stored, so run --deadline will not know them: " +
+                          stored.error().text());
+  }
+}
+
+Result<void> write_files(const std::string& folder, const Sweep& sweep, Session& session) {
+  if (folder.empty()) return {};
+  const std::string csv = sweep_csv(sweep);
+  TRY(write_file_atomically(folder + "/pareto.csv", std::as_bytes(std::span(csv))));
+  if (!TRY(write_plots(folder, sweep))) {
+    session.note(
+        "gnuplot is not installed, so there are no plots; pareto.csv has every point, and the .gnuplot files draw them "
+        "anywhere else");
+  }
+  return {};
+}
+
+/// Names of solvers, bases and scenes are checked where they are looked up.
+Result<void> check(const ParetoRequest& o) {
+  constexpr double longest_s = 1e7, largest_noise = 1e6;
+  const double s = o.budget_s.value_or(0.0);
+  TRY(need(!o.board.empty(), "--board", "is missing, for example --board boards/sim-8x8"));
+  TRY(need(s >= 0.0 && s <= longest_s, "--budget",
+           fmt::format("is {} seconds, expected 0 (no end) to {}", s, longest_s)));
+  TRY(need(o.longest_ms > 0.0 && std::isfinite(o.longest_ms), "--longest",
+           fmt::format("is {} ms, expected a number above 0", o.longest_ms)));
+  TRY(need(!o.noise.empty(), "--noise", "names no level, expected at least one"));
+  const auto bad =
+      std::find_if(o.noise.begin(), o.noise.end(), [](double n) { return !(n > 0.0 && n <= largest_noise); });
+  return need(bad == o.noise.end(), "--noise",
+              fmt::format("has {}, expected numbers above 0 and at most {}, times the board's own noise",
+                          bad == o.noise.end() ? 0.0 : *bad, largest_noise));
+}
+
+/// Accuracy against time of everything that a board can be solved with, on this machine. Prints the efficient points,
+/// stores every point beside the board for `run --deadline`, and writes CSV and plots. Ctrl-C keeps what was measured,
+/// and the stored points say that they are partial.
+Result<void> run_pareto(const ParetoRequest& o, Session& session) {
+  TRY(check(o));
+  const Board board = TRY(load_board(o.board));
+  TRY(try_folder(o.out));
+  auto swept = sweep(board, o, session.clock(), session.progress());
+  session.end_progress();
+  Sweep measured = TRY(std::move(swept));
+  store(board, measured);
+  // Printed first: a file that cannot be written must not cost the figures.
+  TRY(session.print(sweep_text(measured), points_json(measured)));
+  return write_files(o.out, measured, session);
+}
 
 std::string footer() {
   return "Sweeps operator, solver, basis, precision and iterations on this machine. Every point is judged on twelve "
@@ -24,30 +117,27 @@ std::string footer() {
          "  compueye pareto --board boards/sim-80x80 --solvers admm,cp --bases dct,tv --scenes phantom --out phantom";
 }
 
+Action declare(OptionList& options) {
+  auto o = std::make_shared<ParetoRequest>();
+  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8");
+  options.add("--out", o->out, "folder for the CSV and the plots; made when missing (default: none)");
+  options.flag("--quick", o->quick, "few iterations of every solver and fewer timed frames: a first look");
+  options.add("--budget", o->budget_s,
+              "seconds after which no new point is begun, 0 = no end (default 600, with --quick 30)");
+  options.add("--longest", o->longest_ms, "slower frames than so many ms are not tried (default 1000)");
+  options.add("--solvers", o->solvers, "only these, such as admm,cp (default: all)");
+  options.add("--bases", o->bases, "only these, such as dct,tv (default: all)");
+  options.add("--scenes", o->scenes,
+              "built-in scenes to take turns (default: line-art, phantom and bars; dots below 32 x 32 pixels)");
+  options.add("--noise", o->noise, "noise levels as multiples of the board's own (default 1,4,16)");
+  options.json("print one object with every figure and nothing else on stdout");
+  return action_of(o, run_pareto);
+}
+
 }  // namespace
 
-void add_pareto_command(CLI::App& app, Action& chosen) {
-  auto options = std::make_shared<ParetoRequest>();
-  ParetoRequest& o = *options;
-  CLI::App* command = app.add_subcommand("pareto", "accuracy against time of everything a board can be solved with");
-  command->add_option("--board", o.board, "folder of the board, such as boards/sim-8x8");
-  command->add_option("--out", o.out, "folder for the CSV and the plots; made when missing (default: none)");
-  command->add_flag("--quick", o.quick, "few iterations of every solver and fewer timed frames: a first look");
-  command->add_option("--budget", o.budget_s,
-                      "seconds after which no new point is begun, 0 = no end (default 600, with --quick 30)");
-  command->add_option("--longest", o.longest_ms, "slower frames than so many ms are not tried (default 1000)");
-  command->add_option("--solvers", o.solvers, "only these, such as admm,cp (default: all)")->delimiter(',');
-  command->add_option("--bases", o.bases, "only these, such as dct,tv (default: all)")->delimiter(',');
-  command
-      ->add_option("--scenes", o.scenes,
-                   "built-in scenes to take turns (default: line-art, phantom and bars; dots below 32 x 32 pixels)")
-      ->delimiter(',');
-  command->add_option("--noise", o.noise, "noise levels as multiples of the board's own (default 1,4,16)")
-      ->delimiter(',');
-  command->add_flag("--json", o.json, "print one object with every figure and nothing else on stdout");
-  command->footer(footer());
-  command->callback(
-      [options, &chosen] { chosen = [options] { return with_json_failure(options->json, run_pareto(*options)); }; });
-}
+extern const Command pareto_command;
+const Command pareto_command{"pareto", "accuracy against time of everything a board can be solved with",
+                             OnSignal::ends_in_order, declare, footer};
 
 }  // namespace compueye::firmware

@@ -3,17 +3,20 @@
 #include <memory>
 
 #include "firmware/app/command.hpp"
-#include "firmware/app/options/json_failure.hpp"
 
 namespace compueye::firmware {
+namespace {
 
-void add_reconstruct_command(CLI::App& app, Action& chosen) {
-  auto options = std::make_shared<ReconstructOptions>();
-  CLI::App* command = app.add_subcommand("reconstruct", "samples y and a response A become pictures x");
-  add_reconstruct_options(*command, *options);
-  command->footer(reconstruct_footer());
-  command->callback(
-      [options, &chosen] { chosen = [options] { return with_json_failure(options->json, reconstruct(*options)); }; });
+Action declare(OptionList& options) {
+  auto o = std::make_shared<ReconstructOptions>();
+  add_reconstruct_options(options, *o);
+  return action_of(o, reconstruct);
 }
+
+}  // namespace
+
+extern const Command reconstruct_command;
+const Command reconstruct_command{"reconstruct", "samples y and a response A become pictures x", OnSignal::gives_up,
+                                  declare, reconstruct_footer};
 
 }  // namespace compueye::firmware

@@ -1,44 +1,172 @@
-#include <memory>
+#include <fmt/format.h>
 
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "calib/nominal.hpp"
+#include "calib/plausible_response.hpp"
+#include "calib/response_summary.hpp"
 #include "firmware/app/command.hpp"
-#include "firmware/app/options/json_failure.hpp"
-#include "firmware/app/options/option_checks.hpp"
-#include "firmware/app/response/write_nominal.hpp"
+#include "firmware/app/report/json_report.hpp"
+#include "firmware/eye/board.hpp"
+#include "firmware/files/atomic_file.hpp"
+#include "firmware/files/response_file.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/table.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
+namespace {
 
-void add_response_command(CLI::App& app, Action& chosen) {
-  auto options = std::make_shared<ResponseOptions>();
-  CLI::App* command = app.add_subcommand("response", "the response A that a board's geometry gives");
-  command->add_option("--board", options->board, "folder of the board, such as boards/sim-8x8")
-      ->required()
-      ->type_name("DIR");
-  command
-      ->add_option("--out", options->out,
-                   "A as .mtx (sparse, exact) or .npy (dense float32, at most 1 GiB); without it only the figures")
-      ->type_name("FILE");
-  command
-      ->add_option("--distance", options->distance_mm, "of the object plane from the lens tip (default: the board's)")
-      ->type_name("MM")
-      ->check(number_where([](double v) { return v > 0.0; }, "a finite number of mm above 0"));
-  command
-      ->add_option("--as-measured", options->as_measured,
-                   "not as drawn but as a calibration of a built eye might find it, see below; same seed, same eye")
-      ->type_name("SEED");
-  command->add_flag("--json", options->json, "print one object with every figure");
-  command->footer(
-      "a_mj is the share of pixel j, 0 to 1, that the cone of ommatidium m covers on the object plane. .eye files come "
-      "later.\n--as-measured tilts every axis (0.05 deg std), spreads gains (2 %), softens the edge of every field "
-      "(over "
-      "30 % of the\nhalf angle) and makes its sensitivity uneven (3 % rms), so rows are neither binary nor mirror "
-      "images "
-      "of each other.\nCtrl-C leaves no file behind. Exit codes: 0 done, 1 failed, 2 wrong usage.\n\n"
-      "Examples:\n"
-      "  compueye response --board boards/sim-8x8 --out A.mtx\n"
-      "  compueye response --board boards/sim-80x80 --distance 12 --json\n"
-      "  compueye response --board boards/sim-8x8 --as-measured 1 --out measured.mtx");
-  command->callback(
-      [options, &chosen] { chosen = [options] { return with_json_failure(options->json, write_nominal(*options)); }; });
+using hal::Result;
+
+/// What `compueye response` was asked for.
+struct ResponseRequest {
+  std::string board;
+  std::string out;                    ///< .mtx or .npy; empty: only the figures
+  std::optional<double> distance_mm;  ///< absent: the board's
+  /// Seed of a calib::plausible_response(); absent: the nominal one.
+  std::optional<std::uint64_t> as_measured;
+};
+
+struct NominalReport {
+  std::string board;
+  hal::ObjectPlane object;
+  std::optional<std::uint64_t> as_measured;
+  calib::ResponseSummary summary;
+  double seconds = 0.0;
+  std::string out;
+  std::optional<std::uint64_t> file_bytes;  ///< of a regular file
+
+  [[nodiscard]] double density() const {
+    return static_cast<double>(summary.entries) / summary.ommatidia / summary.pixels;
+  }
+};
+
+/// Everything that would refuse the file once it is computed.
+Result<void> try_response_output(const std::string& out, int ommatidia, int pixels) {
+  if (out.empty()) return {};
+  TRY(check_response_target(out, ommatidia, pixels));
+  return try_output(out);
 }
+
+std::string report_text(const NominalReport& r) {
+  const calib::ResponseSummary& s = r.summary;
+  Table table({{"figure", Align::left}, {"value", Align::left}});
+  table.add({"board", r.board});
+  table.add({"response", fmt::format("{} ommatidia x {} pixels ({}x{}) at {} mm", grouped(s.ommatidia),
+                                     grouped(s.pixels), r.object.rows, r.object.cols, r.object.distance_mm)});
+  if (r.as_measured) table.add({"as measured", fmt::format("with build errors of seed {}", *r.as_measured)});
+  table.add({"entries", fmt::format("{} ({} %)", grouped(s.entries), significant(100.0 * r.density(), 3))});
+  table.add({"blind rows", grouped(s.blind_rows)});
+  table.add({"pixels seen", fmt::format("{} to {} a row, median {:.6g}", grouped(s.support_min), grouped(s.support_max),
+                                        s.support_median)});
+  table.add({"unseen pixels", grouped(s.unseen_pixels())});
+  table.add({"rows seeing a pixel", "at most " + grouped(s.most_seen)});
+  table.add({"time", duration(r.seconds)});
+  if (!r.out.empty()) table.add({"written", r.out + (r.file_bytes ? ", " + bytes(*r.file_bytes) : "")});
+  return table.text();
+}
+
+Json report_json(const NominalReport& r) {
+  const calib::ResponseSummary& s = r.summary;
+  return {{"board", r.board},
+          {"distance_mm", r.object.distance_mm},
+          {"as_measured", r.as_measured ? Json(*r.as_measured) : Json()},
+          {"ommatidia", s.ommatidia},
+          {"pixels", s.pixels},
+          {"rows", r.object.rows},
+          {"cols", r.object.cols},
+          {"entries", s.entries},
+          {"density", r.density()},
+          {"blind_rows", s.blind_rows},
+          {"support", {{"min", s.support_min}, {"median", s.support_median}, {"max", s.support_max}}},
+          {"seen_pixels", s.seen_pixels},
+          {"unseen_pixels", s.unseen_pixels()},
+          {"most_seen", s.most_seen},
+          {"seconds", r.seconds},
+          {"written", r.out.empty() ? Json() : Json(r.out)},
+          {"file_bytes", r.file_bytes ? Json(*r.file_bytes) : Json()}};
+}
+
+Result<void> write(const std::string& out, const recon::Response& response, NominalReport& report) {
+  if (out.empty()) return {};
+  TRY(write_response(out, response));
+  std::error_code error;
+  const auto size = std::filesystem::file_size(out, error);
+  if (!error) report.file_bytes = size;
+  report.out = out;
+  return {};
+}
+
+/// The response that a board's geometry gives, or one as a calibration of such an eye might find it, as a file, and its
+/// figures on stdout.
+Result<void> write_nominal(const ResponseRequest& o, Session& session) {
+  Board board = TRY(load_board(o.board));
+  board.object.distance_mm = o.distance_mm.value_or(board.object.distance_mm);
+  TRY(try_response_output(o.out, board.eye.ommatidia(), board.object.pixels()));
+
+  if (!o.out.empty()) session.guard_output(o.out);
+  const std::int64_t began_ns = session.clock().now_ns();
+  const calib::Progress progress = session.progress();
+  auto made = o.as_measured ? calib::plausible_response(board.eye, board.object, {}, *o.as_measured, progress)
+                            : calib::nominal_response(board.eye, board.object, progress);
+  session.end_progress();
+  TRY(session.check_stop());
+  const recon::Response response = TRY(std::move(made));
+  NominalReport report{board.name,
+                       board.object,
+                       o.as_measured,
+                       calib::summarise(response),
+                       static_cast<double>(session.clock().now_ns() - began_ns) * 1e-9,
+                       {},
+                       {}};
+  TRY(write(o.out, response, report));
+  // A stop that comes this late finds the file complete.
+  static_cast<void>(session.seal());
+  return session.print(report_text(report), json_text(report_json(report)));
+}
+
+Action declare(OptionList& options) {
+  auto o = std::make_shared<ResponseRequest>();
+  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8").required().type("DIR");
+  options
+      .add("--out", o->out,
+           "A as .mtx (sparse, exact) or .npy (dense float32, at most 1 GiB); without it only the figures")
+      .type("FILE");
+  options.add("--distance", o->distance_mm, "of the object plane from the lens tip (default: the board's)")
+      .type("MM")
+      .where(number_where([](double v) { return v > 0.0; }, "a finite number of mm above 0"));
+  options
+      .add("--as-measured", o->as_measured,
+           "not as drawn but as a calibration of a built eye might find it, see below; same seed, same eye")
+      .type("SEED");
+  options.json("print one object with every figure");
+  return action_of(o, write_nominal);
+}
+
+std::string footer() {
+  return "a_mj is the share of pixel j, 0 to 1, that the cone of ommatidium m covers on the object plane. .eye files "
+         "come later.\n--as-measured tilts every axis (0.05 deg std), spreads gains (2 %), softens the edge of every "
+         "field (over 30 % of the\nhalf angle) and makes its sensitivity uneven (3 % rms), so rows are neither binary "
+         "nor mirror images of each other.\nCtrl-C leaves no file behind. Exit codes: 0 done, 1 failed, 2 wrong "
+         "usage.\n\n"
+         "Examples:\n"
+         "  compueye response --board boards/sim-8x8 --out A.mtx\n"
+         "  compueye response --board boards/sim-80x80 --distance 12 --json\n"
+         "  compueye response --board boards/sim-8x8 --as-measured 1 --out measured.mtx";
+}
+
+}  // namespace
+
+extern const Command response_command;
+const Command response_command{"response", "the response A that a board's geometry gives", OnSignal::gives_up, declare,
+                               footer};
 
 }  // namespace compueye::firmware

@@ -1,38 +1,225 @@
-#include "firmware/app/simulate/simulate.hpp"
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "firmware/app/command.hpp"
+#include "firmware/app/report/json_report.hpp"
+#include "firmware/eye/board.hpp"
 #include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/simulated_board.hpp"
+#include "firmware/files/npy.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/table.hpp"
+#include "hal/try.hpp"
+#include "sim/scene_truth.hpp"
+#include "sim/simulated_eye.hpp"
 
 namespace compueye::firmware {
+namespace {
 
-void add_simulate_command(CLI::App& app, Action& chosen) {
-  auto o = std::make_shared<SimulateOptions>();
-  CLI::App* command = app.add_subcommand("simulate", "samples of a board's simulated eye");
-  command->add_option("--board", o->board, "folder of the board, such as boards/sim-8x8")->required();
-  command->add_option("--scene", o->scene,
-                      "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
-  command->add_option("--scene-seed", o->scene_seed, "which drawing of a built-in scene (default 0)");
-  command->add_option("--out", o->out, ".npy file for the samples, (M,) or (frames, M)");
-  command->add_option("--frames", o->frames, "how many (default 1)");
-  command->add_option("--seed", o->seed, "of the noise (default 0)");
-  command->add_option("--distance", o->distance_mm, "of the object plane and the scene on it, mm from the lens tip");
-  command->add_option("--scene-distance", o->scene_distance_mm, "of the scene alone, mm from the lens tip");
-  command->add_flag("--noise-free", o->noise_free, "exact signals: no read noise, no rounding (with --codes: rounded)");
-  command->add_flag("--codes", o->codes, "raw codes instead of corrected samples");
-  command->add_option("--truth", o->truth, ".npy file for the scene on the object plane's pixels, (rows, columns)");
-  command->add_option("--weights", o->weights, ".npy file for weights shaped like the samples, 0 = tells nothing");
-  command->add_flag("--explain", o->explain, "print which effects are on and off; works without --out too");
-  command->add_flag("--json", o->json, "print one object and nothing else on stdout");
-  command->footer(
-      "Samples are in units of one fully seen white pixel, corrected for dark level and LSB. Dead channels "
-      "are NaN.\n\nBuilt-in scenes:\n" +
-      built_in_scene_help() +
-      "\nExamples:\n"
-      "  compueye simulate --board boards/sim-8x8 --scene fig2 --out y.npy --truth x.npy\n"
-      "  compueye simulate --board boards/sim-80x80 --frames 10 --seed 3 --out y.npy --explain");
-  command->callback([o, &chosen] { chosen = [o] { return simulate(*o); }; });
+using hal::Result;
+
+/// What `compueye simulate` was asked for.
+struct SimulateRequest {
+  std::string board;
+  std::string scene;  ///< empty: the board's
+  std::int64_t scene_seed = 0;
+  std::string out;  ///< y.npy
+  std::int64_t frames = 1;
+  std::int64_t seed = 0;
+  std::optional<double> distance_mm;
+  std::optional<double> scene_distance_mm;
+  bool noise_free = false;
+  bool codes = false;
+  std::string truth;
+  std::string weights;
+  bool explain = false;
+};
+
+Result<void> check(const SimulateRequest& o) {
+  TRY(need(o.frames >= 1 && o.frames <= 1'000'000, "--frames", fmt::format("is {}, expected 1 to 1000000", o.frames)));
+  TRY(need(o.seed >= 0, "--seed", "is negative, expected 0 or more"));
+  TRY(need(o.scene_seed >= 0, "--scene-seed", "is negative, expected 0 or more"));
+  TRY(need_length("--distance", o.distance_mm));
+  TRY(need_length("--scene-distance", o.scene_distance_mm));
+  return need(!o.out.empty() || !o.truth.empty() || o.explain, "--out",
+              "is missing: name the .npy file for the samples, for example --out y.npy");
 }
+
+struct Effect {
+  std::string name;
+  bool on = false;
+  std::string what;
+};
+
+std::vector<Effect> effects_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
+  const SensorSettings& s = board.sensor;
+  const bool sensor = !o.noise_free || o.codes;
+  const bool away = scene.distance_mm && *scene.distance_mm != board.object.distance_mm;
+  return {
+      {"acceptance cone", true, "flat top, light integrated below pixel size"},
+      {"scene off the object plane", away,
+       away ? significant(*scene.distance_mm, 4) + " mm instead of " + significant(board.object.distance_mm, 4) : ""},
+      {"dark level", sensor && s.dark_level_lsb > 0.0,
+       significant(s.dark_level_lsb, 4) + " LSB" + (o.codes ? "" : ", taken out again")},
+      {"read noise", !o.noise_free && s.read_noise_lsb > 0.0, significant(s.read_noise_lsb, 4) + " LSB"},
+      {"quantisation", sensor, fmt::format("{} bits, one LSB is {} of a white pixel", s.bits, significant(s.lsb(), 4))},
+      {"dead channels", !s.dead.empty(), fmt::format("{}", s.dead.size())},
+      {"lost frames", false, ""},
+  };
+}
+
+std::string table_of(const std::vector<Effect>& effects) {
+  Table table({{"effect", Align::left}, {"", Align::left}, {"", Align::left}});
+  for (const Effect& effect : effects) table.add({effect.name, effect.on ? "on" : "off", effect.on ? effect.what : ""});
+  return table.text();
+}
+
+/// All frames after each other, M values each.
+struct Samples {
+  std::vector<float> values;
+  std::vector<float> weights;
+  std::uint64_t saturated_frames = 0;
+};
+
+void append(const hal::SampleBlock& block, const Board& board, bool codes, Samples& samples) {
+  const double lsb = board.sensor.lsb(), dark = board.sensor.dark_level_lsb;
+  for (std::size_t c = 0; c < block.codes.size(); ++c) {
+    const bool valid = block.valid[c] != 0;
+    const double code = block.codes[c];
+    const double value = codes ? code : (code - dark) * lsb;
+    samples.values.push_back(valid ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN());
+    samples.weights.push_back(valid ? 1.0F : 0.0F);
+  }
+  if (block.flags.saturated) ++samples.saturated_frames;
+}
+
+Result<Samples> take(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
+  hal::VirtualClock clock;
+  auto settings = simulated_eye_settings(board, scene, static_cast<std::uint64_t>(o.seed));
+  if (o.noise_free) settings.steps_off.emplace_back("read noise");
+  const auto eye = TRY(sim::SimulatedEye::create(std::move(settings), clock));
+  TRY(eye->start());
+  const std::span<const double> signal = eye->noise_free(0);
+  Samples samples;
+  for (std::int64_t f = 0; f < o.frames; ++f) {
+    append(TRY(eye->read(0)), board, o.codes, samples);
+    if (!o.noise_free || o.codes) continue;
+    for (std::size_t c = 0; c < signal.size(); ++c) {
+      float& value = samples.values[samples.values.size() - signal.size() + c];
+      if (!std::isnan(value)) value = static_cast<float>(signal[c]);
+    }
+  }
+  return samples;
+}
+
+Result<void> write(const Samples& samples, const Board& board, const SimulateRequest& o) {
+  std::vector<std::int64_t> shape{board.eye.ommatidia()};
+  if (o.frames > 1) shape.insert(shape.begin(), o.frames);
+  if (!o.out.empty()) TRY(write_npy(o.out, shape, std::span<const float>(samples.values)));
+  if (o.weights.empty()) return {};
+  return write_npy(o.weights, shape, std::span<const float>(samples.weights));
+}
+
+Result<void> write_truth(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
+  if (o.truth.empty()) return {};
+  const hal::Image truth = TRY(sim::scene_truth(scene, board.object));
+  const std::array<std::int64_t, 2> shape{truth.rows, truth.cols};
+  return write_npy(o.truth, shape, std::span<const float>(truth.pixels));
+}
+
+Json json_of(const Board& board, const sim::Scene& scene, const Samples& samples, const SimulateRequest& o) {
+  Json effects = Json::array();
+  for (const Effect& e : effects_of(board, scene, o))
+    effects.push_back({{"name", e.name}, {"on", e.on}, {"what", e.what}});
+  return {{"board", board.name},
+          {"scene", scene.name},
+          {"frames", o.frames},
+          {"channels", board.eye.ommatidia()},
+          {"seed", o.seed},
+          {"distance_mm", board.object.distance_mm},
+          {"unit", o.codes ? "code" : "fully seen white pixel"},
+          {"lsb", board.sensor.lsb()},
+          {"noise_sigma", o.noise_free ? 0.0 : board.sensor.noise_sigma()},
+          {"dead_channels", board.sensor.dead.size()},
+          {"saturated_frames", samples.saturated_frames},
+          {"effects", std::move(effects)},
+          {"samples_file", o.out},
+          {"truth_file", o.truth}};
+}
+
+std::string text_of(const Board& board, const sim::Scene& scene, const Samples& samples, const SimulateRequest& o) {
+  std::string text;
+  if (o.explain) text += table_of(effects_of(board, scene, o));
+  if (!o.out.empty()) {
+    text += fmt::format("{}: {} frame{} of {} samples of {} in front of {}\n", o.out, o.frames,
+                        o.frames == 1 ? "" : "s", board.eye.ommatidia(), board.name, scene.name);
+  }
+  if (samples.saturated_frames > 0)
+    text += fmt::format("{} frames have saturated channels\n", samples.saturated_frames);
+  if (!board.sensor.dead.empty()) {
+    text += fmt::format("{} dead channels are NaN; --weights writes the weights that leave them out\n",
+                        board.sensor.dead.size());
+  }
+  return text;
+}
+
+/// Writes the samples of a board's simulated eye: float32, (M,) for one frame and (frames, M) for more, by ommatidium,
+/// in units of one fully seen white pixel with dark level and LSB taken out; channels that tell nothing are NaN.
+Result<void> simulate(const SimulateRequest& request, Session& session) {
+  TRY(check(request));
+  Board board = TRY(load_board(request.board));
+  if (request.distance_mm) board.object.distance_mm = *request.distance_mm;
+  const sim::Scene scene = TRY(
+      choose_scene(board, {request.scene, static_cast<std::uint64_t>(request.scene_seed), request.scene_distance_mm}));
+  const Samples samples = TRY(take(board, scene, request));
+  TRY(write(samples, board, request));
+  TRY(write_truth(board, scene, request));
+  return session.print(text_of(board, scene, samples, request), json_text(json_of(board, scene, samples, request)));
+}
+
+Action declare(OptionList& options) {
+  auto o = std::make_shared<SimulateRequest>();
+  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8").required();
+  options.add("--scene", o->scene, "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
+  options.add("--scene-seed", o->scene_seed, "which drawing of a built-in scene (default 0)");
+  options.add("--out", o->out, ".npy file for the samples, (M,) or (frames, M)");
+  options.add("--frames", o->frames, "how many (default 1)");
+  options.add("--seed", o->seed, "of the noise (default 0)");
+  options.add("--distance", o->distance_mm, "of the object plane and the scene on it, mm from the lens tip");
+  options.add("--scene-distance", o->scene_distance_mm, "of the scene alone, mm from the lens tip");
+  options.flag("--noise-free", o->noise_free, "exact signals: no read noise, no rounding (with --codes: rounded)");
+  options.flag("--codes", o->codes, "raw codes instead of corrected samples");
+  options.add("--truth", o->truth, ".npy file for the scene on the object plane's pixels, (rows, columns)");
+  options.add("--weights", o->weights, ".npy file for weights shaped like the samples, 0 = tells nothing");
+  options.flag("--explain", o->explain, "print which effects are on and off; works without --out too");
+  options.json("print one object and nothing else on stdout");
+  return action_of(o, simulate);
+}
+
+std::string footer() {
+  return "Samples are in units of one fully seen white pixel, corrected for dark level and LSB. Dead channels "
+         "are NaN.\n\nBuilt-in scenes:\n" +
+         built_in_scene_help() +
+         "\nExamples:\n"
+         "  compueye simulate --board boards/sim-8x8 --scene fig2 --out y.npy --truth x.npy\n"
+         "  compueye simulate --board boards/sim-80x80 --frames 10 --seed 3 --out y.npy --explain";
+}
+
+}  // namespace
+
+extern const Command simulate_command;
+const Command simulate_command{"simulate", "samples of a board's simulated eye", OnSignal::ends_the_process, declare,
+                               footer};
 
 }  // namespace compueye::firmware

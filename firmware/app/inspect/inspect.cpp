@@ -10,13 +10,11 @@
 #include "firmware/app/inspect/board_figures.hpp"
 #include "firmware/app/inspect/figure_list.hpp"
 #include "firmware/app/inspect/response_figures.hpp"
-#include "firmware/app/interrupt/interrupt_watch.hpp"
-#include "firmware/app/options/value_text.hpp"
-#include "firmware/app/report/progress_reporter.hpp"
+#include "firmware/app/option_list.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/files/matrix_market.hpp"
 #include "firmware/files/npy.hpp"
-#include "hal/clock.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -26,14 +24,14 @@ using hal::ErrorCode;
 using hal::fail;
 using hal::Result;
 
-Result<void> inspect_board(const InspectOptions& o, const recon::Progress& progress, FigureList& figures) {
+Result<void> inspect_board(const InspectRequest& o, const recon::Progress& progress, FigureList& figures) {
   figures.add("kind", "", "", "board");
   const auto board = load_board(o.what);
   if (!board) return tl::unexpected(board.error());
   return add_board_figures(*board, progress, figures);
 }
 
-Result<void> inspect_matrix(const InspectOptions& o, const recon::Progress& progress, FigureList& figures) {
+Result<void> inspect_matrix(const InspectRequest& o, const recon::Progress& progress, FigureList& figures) {
   figures.add("kind", "", "", "response");
   const auto response = read_matrix_market(o.what);
   if (!response) return tl::unexpected(response.error());
@@ -41,12 +39,12 @@ Result<void> inspect_matrix(const InspectOptions& o, const recon::Progress& prog
 }
 
 /// Two axes may be a response, samples or a picture; the figures of a response do no harm to the others.
-bool is_response(const InspectOptions& o, const NpyArray& array) {
+bool is_response(const InspectRequest& o, const NpyArray& array) {
   if (o.as == "response") return true;
   return o.as == "auto" && array.shape.size() == 2 && !first_non_finite(array.values);
 }
 
-Result<void> inspect_array(const InspectOptions& o, const recon::Progress& progress, FigureList& figures) {
+Result<void> inspect_array(const InspectRequest& o, const recon::Progress& progress, FigureList& figures) {
   auto array = o.as == "response" ? read_matrix(o.what) : read_npy(o.what, 1, 3);
   if (!array) return tl::unexpected(std::move(array.error()));
   const bool response = is_response(o, *array);
@@ -65,7 +63,7 @@ Result<void> inspect_array(const InspectOptions& o, const recon::Progress& progr
   return add_response_figures(*matrix, picture_size_from(o.size), progress, figures);
 }
 
-Result<void> add_figures(const InspectOptions& o, const recon::Progress& progress, FigureList& figures) {
+Result<void> add_figures(const InspectRequest& o, const recon::Progress& progress, FigureList& figures) {
   const fs::path path(o.what);
   const std::string ending = path.extension().string();
   std::error_code error;
@@ -82,23 +80,14 @@ Result<void> add_figures(const InspectOptions& o, const recon::Progress& progres
 
 }  // namespace
 
-Result<void> inspect(const InspectOptions& o) {
-  InterruptWatch watch;
-  const hal::MonotonicClock clock;
-  ProgressReporter reporter(clock);
+Result<void> inspect(const InspectRequest& o, Session& session) {
   FigureList figures;
   figures.add("file", "file", o.what, o.what);
-  const auto done = add_figures(
-      o,
-      [&](std::string_view what, double done_so_far, double total) {
-        reporter.update(what, done_so_far, total);
-        return !watch.requested();
-      },
-      figures);
-  reporter.finish();
-  if (auto stopped = watch.check(); !stopped) return stopped;
-  if (!done) return tl::unexpected(done.error());
-  return print_text(o.json ? json_text(figures.json()) : figures.text());
+  const auto done = add_figures(o, session.progress(), figures);
+  session.end_progress();
+  TRY(session.check_stop());
+  TRY(done);
+  return session.print(figures.text(), json_text(figures.json()));
 }
 
 }  // namespace compueye::firmware

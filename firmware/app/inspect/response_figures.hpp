@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "firmware/app/inspect/figure_list.hpp"
-#include "firmware/app/options/value_text.hpp"
+#include "firmware/app/option_list.hpp"
 #include "hal/result.hpp"
 #include "recon/response.hpp"
 #include "recon/setup/factor.hpp"

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 
+#include "hal/try.hpp"
 #include "recon/core/parts/workspace.hpp"
 
 namespace compueye::firmware {
@@ -29,34 +30,30 @@ hal::Result<void> check_health(const recon::FrameInfo& info, std::int64_t frame)
 
 hal::Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& reconstructor,
                                                          const FrameInputs& inputs, const Truth* truth,
-                                                         PictureOutputs& outputs, const hal::Clock& clock,
-                                                         const recon::Progress& progress, const InterruptWatch& watch) {
+                                                         PictureOutputs& outputs, Session& session) {
   std::vector<Line> workspace = workspace_of(reconstructor);
   std::vector<float> picture(static_cast<std::size_t>(reconstructor.pixels()));
   std::vector<FrameRecord> records;
   records.reserve(static_cast<std::size_t>(inputs.frames));
+  const recon::Progress progress = session.progress();
   const auto tell = [&](std::int64_t done) {
-    if (progress) progress("reconstructing", static_cast<double>(done), static_cast<double>(inputs.frames));
+    progress("reconstructing", static_cast<double>(done), static_cast<double>(inputs.frames));
   };
   for (std::int64_t f = 0; f < inputs.frames; ++f) {
     tell(f);
     FrameRecord record;
-    const std::int64_t began_ns = clock.now_ns();
+    const std::int64_t began_ns = session.clock().now_ns();
     record.info = reconstructor.solve(inputs.samples_of(f), inputs.weights_of(f),
                                       std::as_writable_bytes(std::span(workspace)), picture);
-    record.solve_ms = static_cast<double>(clock.now_ns() - began_ns) * 1e-6;
-    const auto written = watch.check().and_then([&] { return check_health(record.info, f); }).and_then([&] {
-      return outputs.add(picture);
-    });
-    if (!written) return tl::unexpected(written.error());
-    if (truth != nullptr) {
-      const auto quality = truth->compare(f, picture);
-      if (!quality) return tl::unexpected(quality.error());
-      record.quality = *quality;
-    }
+    record.solve_ms = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-6;
+    TRY(session.check_stop());
+    TRY(check_health(record.info, f));
+    TRY(outputs.add(picture));
+    if (truth != nullptr) record.quality = TRY(truth->compare(f, picture));
     records.push_back(record);
   }
   tell(inputs.frames);
+  session.end_progress();
   return records;
 }
 

@@ -3,11 +3,10 @@
 #include <optional>
 #include <vector>
 
-#include "firmware/app/interrupt/interrupt_watch.hpp"
 #include "firmware/app/reconstruct/frame_inputs.hpp"
 #include "firmware/app/reconstruct/frame_quality.hpp"
 #include "firmware/app/reconstruct/picture_outputs.hpp"
-#include "hal/clock.hpp"
+#include "firmware/app/session.hpp"
 #include "hal/result.hpp"
 #include "recon/reconstructor.hpp"
 
@@ -20,13 +19,10 @@ struct FrameRecord {
   std::optional<FrameQuality> quality;  ///< with a truth only
 };
 
-/// Solves every frame in order and hands the pictures to `outputs`. `progress` may be empty.
-/// Errors: interrupted; out_of_range when a frame's numbers leave the range of the precision, named by frame; those of
-/// `outputs`.
+/// Solves every frame in order and hands the pictures to `outputs`. Errors: interrupted; out_of_range when a frame's
+/// numbers leave the range of the precision, named by frame; those of `outputs`.
 [[nodiscard]] hal::Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& reconstructor,
                                                                        const FrameInputs& inputs, const Truth* truth,
-                                                                       PictureOutputs& outputs, const hal::Clock& clock,
-                                                                       const recon::Progress& progress,
-                                                                       const InterruptWatch& watch);
+                                                                       PictureOutputs& outputs, Session& session);
 
 }  // namespace compueye::firmware

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <span>
 
-#include "firmware/app/options/value_text.hpp"
+#include "firmware/app/option_list.hpp"
 #include "firmware/files/npy.hpp"
 #include "hal/result.hpp"
 

@@ -1,22 +1,22 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "firmware/app/interrupt/interrupt_watch.hpp"
-#include "firmware/app/options/value_text.hpp"
+#include "firmware/app/option_list.hpp"
+#include "firmware/app/session.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
 
 struct OutputRequest {
-  std::filesystem::path npy;  ///< empty: none
-  std::filesystem::path png;  ///< empty: none
+  std::string npy;  ///< empty: none
+  std::string png;  ///< empty: none
   PictureSize size;
   std::int64_t frames = 1;
   bool has_frame_axis = false;
@@ -27,7 +27,7 @@ class PictureOutputs {
  public:
   /// Begins the .npy and tries whether the PNGs can be written, so that a long computation does not end in an error
   /// that could have been told at once. Errors: those of AtomicFile; out_of_range (a side too long for PNG).
-  [[nodiscard]] static hal::Result<PictureOutputs> create(const OutputRequest& request, InterruptWatch& watch);
+  [[nodiscard]] static hal::Result<PictureOutputs> create(const OutputRequest& request, Session& session);
 
   PictureOutputs(const PictureOutputs&) = delete;
   PictureOutputs& operator=(const PictureOutputs&) = delete;
@@ -41,14 +41,13 @@ class PictureOutputs {
   [[nodiscard]] hal::Result<void> commit();
 
  private:
-  explicit PictureOutputs(OutputRequest request, InterruptWatch& watch)
-      : request_(std::move(request)), watch_(&watch) {}
-  [[nodiscard]] std::filesystem::path png_path(std::int64_t frame) const;
+  explicit PictureOutputs(OutputRequest request, Session& session) : request_(std::move(request)), session_(&session) {}
+  [[nodiscard]] std::string png_path(std::int64_t frame) const;
 
   OutputRequest request_;
-  InterruptWatch* watch_;
+  Session* session_;
   std::optional<AtomicFile> npy_;
-  std::vector<std::filesystem::path> written_;
+  std::vector<std::string> written_;
   std::int64_t next_ = 0;
 };
 

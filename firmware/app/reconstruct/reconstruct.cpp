@@ -9,15 +9,13 @@
 #include <optional>
 #include <utility>
 
-#include "firmware/app/interrupt/interrupt_watch.hpp"
 #include "firmware/app/reconstruct/frame_inputs.hpp"
 #include "firmware/app/reconstruct/frame_loop.hpp"
 #include "firmware/app/reconstruct/frame_quality.hpp"
 #include "firmware/app/reconstruct/picture_outputs.hpp"
 #include "firmware/app/reconstruct/reconstruct_report.hpp"
-#include "firmware/app/report/progress_reporter.hpp"
 #include "firmware/files/response_file.hpp"
-#include "hal/clock.hpp"
+#include "hal/try.hpp"
 #include "recon/lambda_by_risk.hpp"
 #include "recon/lambda_rule.hpp"
 
@@ -65,25 +63,17 @@ Result<void> check_range(const ReconstructOptions& o, const recon::Response& res
                           squares));
 }
 
-Result<Inputs> read_inputs(const ReconstructOptions& o, PictureSize size, const InterruptWatch& watch) {
+Result<Inputs> read_inputs(const ReconstructOptions& o, PictureSize size, const Session& session) {
   Inputs inputs;
-  auto response = read_response(o.response);
-  if (!response) return tl::unexpected(std::move(response.error()));
-  auto checked = watch.check().and_then([&] { return check_size(o, *response, size); }).and_then([&] {
-    return check_sees(o, *response, false);
-  });
-  if (!checked) return tl::unexpected(std::move(checked.error()));
-  auto frames = read_frame_inputs(*response, o.samples, o.weights);
-  if (!frames) return tl::unexpected(std::move(frames.error()));
-  inputs.frames = std::move(*frames);
-  inputs.response = scaled_response(std::move(*response), inputs.frames);
-  checked = check_sees(o, *inputs.response, true).and_then([&] { return check_range(o, *inputs.response); });
-  if (!checked) return tl::unexpected(std::move(checked.error()));
-  if (!o.truth.empty()) {
-    auto truth = Truth::read(o.truth, size, inputs.frames.frames);
-    if (!truth) return tl::unexpected(std::move(truth.error()));
-    inputs.truth = std::move(*truth);
-  }
+  recon::Response response = TRY(read_response(o.response));
+  TRY(session.check_stop());
+  TRY(check_size(o, response, size));
+  TRY(check_sees(o, response, false));
+  inputs.frames = TRY(read_frame_inputs(response, o.samples, o.weights));
+  inputs.response = scaled_response(std::move(response), inputs.frames);
+  TRY(check_sees(o, *inputs.response, true));
+  TRY(check_range(o, *inputs.response));
+  if (!o.truth.empty()) inputs.truth = TRY(Truth::read(o.truth, size, inputs.frames.frames));
   return inputs;
 }
 
@@ -117,17 +107,14 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatemen
   problem.objective.lambda = o.lambda.value_or(0.0);
   problem.plan.max_reweighted = inputs.frames.max_reweighted;
   if (o.sigma) {
-    const auto lambda = recon::lambda_by_rule(a, problem.size.rows, problem.size.cols, problem.plan.solver,
-                                              problem.objective.basis, *o.sigma);
-    if (!lambda) return tl::unexpected(lambda.error());
-    problem.objective.lambda = *lambda;
+    problem.objective.lambda = TRY(recon::lambda_by_rule(a, problem.size.rows, problem.size.cols, problem.plan.solver,
+                                                         problem.objective.basis, *o.sigma));
   }
   std::optional<recon::Factor> factor;
   if (o.lambda_from_samples) {
-    auto found = lambda_from_samples(o, problem, inputs, progress);
-    if (!found) return tl::unexpected(std::move(found.error()));
-    problem.objective.lambda = found->lambda;
-    factor = std::move(found->factor);
+    recon::LambdaByRisk found = TRY(lambda_from_samples(o, problem, inputs, progress));
+    problem.objective.lambda = found.lambda;
+    factor = std::move(found.factor);
   }
   auto made = recon::Reconstructor::create(a, problem.size.rows, problem.size.cols, problem.objective, problem.plan,
                                            std::move(factor), progress);
@@ -153,39 +140,26 @@ ReconstructReport report_of(const ReconstructOptions& o, const recon::Reconstruc
 
 }  // namespace
 
-Result<void> reconstruct(const ReconstructOptions& o) {
-  const auto problem = problem_of(o);
-  if (!problem) return tl::unexpected(problem.error());
-  InterruptWatch watch;
-  auto inputs = read_inputs(o, problem->size, watch);
-  if (!inputs) return tl::unexpected(std::move(inputs.error()));
-  auto outputs = PictureOutputs::create(
-      {o.out, o.png, problem->size, inputs->frames.frames, inputs->frames.has_frame_axis}, watch);
-  if (!outputs) return tl::unexpected(std::move(outputs.error()));
+Result<void> reconstruct(const ReconstructOptions& o, Session& session) {
+  const ProblemStatement problem = TRY(problem_of(o));
+  Inputs inputs = TRY(read_inputs(o, problem.size, session));
+  PictureOutputs outputs = TRY(PictureOutputs::create(
+      {o.out, o.png, problem.size, inputs.frames.frames, inputs.frames.has_frame_axis}, session));
 
-  const hal::MonotonicClock clock;
-  ProgressReporter reporter(clock);
-  const recon::Progress progress = [&](std::string_view what, double done, double total) {
-    reporter.update(what, done, total);
-    return !watch.requested();
-  };
-  const std::int64_t began_ns = clock.now_ns();
-  const auto reconstructor = set_up(o, *problem, *inputs, progress);
-  reporter.finish();
-  if (auto stopped = watch.check(); !stopped) return stopped;
-  if (!reconstructor) return tl::unexpected(reconstructor.error());
-  ReconstructReport report = report_of(o, *reconstructor, inputs->frames);
-  report.setup_s = static_cast<double>(clock.now_ns() - began_ns) * 1e-9;
-  inputs->response.reset();
+  const std::int64_t began_ns = session.clock().now_ns();
+  auto made = set_up(o, problem, inputs, session.progress());
+  session.end_progress();
+  TRY(session.check_stop());
+  const recon::Reconstructor reconstructor = TRY(std::move(made));
+  ReconstructReport report = report_of(o, reconstructor, inputs.frames);
+  report.setup_s = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-9;
+  inputs.response.reset();
 
-  auto records = reconstruct_frames(*reconstructor, inputs->frames, inputs->truth ? &*inputs->truth : nullptr, *outputs,
-                                    clock, progress, watch);
-  reporter.finish();
-  if (!records) return tl::unexpected(std::move(records.error()));
-  report.records = std::move(*records);
-  return watch.finish().and_then([&] { return outputs->commit(); }).and_then([&] {
-    return print_text(o.json ? json_text(report_json(report)) : report_text(report));
-  });
+  report.records =
+      TRY(reconstruct_frames(reconstructor, inputs.frames, inputs.truth ? &*inputs.truth : nullptr, outputs, session));
+  TRY(session.seal());
+  TRY(outputs.commit());
+  return session.print(report_text(report), json_text(report_json(report)));
 }
 
 }  // namespace compueye::firmware

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/app/options/option_checks.hpp"
 #include "firmware/app/reconstruct/solver_options.hpp"
 #include "firmware/eye/settings/reconstruction_names.hpp"
 #include "recon/worker_threads.hpp"
@@ -36,112 +35,101 @@ std::vector<std::string_view> operator_words() {
   return words;
 }
 
-void add_files(CLI::App& command, ReconstructOptions& o) {
-  command.add_option("--response", o.response, "measurement matrix A (M, N): .npy dense or .mtx sparse")
-      ->required()
-      ->type_name("FILE");
-  command.add_option("--samples", o.samples, "y: .npy of (M,) or (frames, M), in white pixels")
-      ->required()
-      ->type_name("FILE");
-  command.add_option("--size", o.size, "rows and columns of the picture, H times W = N")
-      ->required()
-      ->type_name("HxW")
-      ->check(text_where([](const std::string& text) {
-        return picture_size_from(text) ? std::string() : "is '" + text + "', expected rows and columns such as 16x16";
-      }));
-  command.add_option("--weights", o.weights, "weights >= 0: .npy of (M,) or (frames, M); 0 = channel missing")
-      ->type_name("FILE");
-  command.add_option("--truth", o.truth, "true picture(s): .npy of (H, W) or (frames, H, W), for NMSE, PSNR, SSIM")
-      ->type_name("FILE");
-  command.add_option("--out", o.out, "x: .npy of (H, W), or (frames, H, W) when the samples have a frames axis")
-      ->type_name("FILE");
-  command
-      .add_option("--png", o.png,
-                  "8-bit picture, 0..1 from black to white; several frames become a numbered series: x.png gives "
-                  "x-0000.png, x-0001.png ...")
-      ->type_name("FILE");
+void add_files(OptionList& options, ReconstructOptions& o) {
+  options.add("--response", o.response, "measurement matrix A (M, N): .npy dense or .mtx sparse")
+      .required()
+      .type("FILE");
+  options.add("--samples", o.samples, "y: .npy of (M,) or (frames, M), in white pixels").required().type("FILE");
+  options.add("--size", o.size, "rows and columns of the picture, H times W = N")
+      .required()
+      .type("HxW")
+      .where(picture_size());
+  options.add("--weights", o.weights, "weights >= 0: .npy of (M,) or (frames, M); 0 = channel missing").type("FILE");
+  options.add("--truth", o.truth, "true picture(s): .npy of (H, W) or (frames, H, W), for NMSE, PSNR, SSIM")
+      .type("FILE");
+  options.add("--out", o.out, "x: .npy of (H, W), or (frames, H, W) when the samples have a frames axis").type("FILE");
+  options
+      .add("--png", o.png,
+           "8-bit picture, 0..1 from black to white; several frames become a numbered series: x.png gives "
+           "x-0000.png, x-0001.png ...")
+      .type("FILE");
 }
 
-void add_problem(CLI::App& command, ReconstructOptions& o) {
-  command.add_option("--solver", o.solver, "admm (default), adm, cp, fista, omp, tikhonov or tsvd")
-      ->type_name("NAME")
-      ->check(one_of(names_in(solver_names()), {"pdhg"}));
-  command.add_option("--basis", o.basis, "where the picture is sparse: identity (default), dct, haar, db4, dft or tv")
-      ->type_name("NAME")
-      ->check(one_of(names_in(basis_names()), {}));
-  auto* nonnegative = command.add_flag("--nonnegative", o.nonnegative, "constraint x >= 0");
-  command.add_option("--box", o.box, "constraint LO <= x <= HI, such as 0,1")
-      ->type_name("LO,HI")
-      ->excludes(nonnegative)
-      ->check(text_where([](const std::string& text) {
+void add_problem(OptionList& options, ReconstructOptions& o) {
+  options.add("--solver", o.solver, choices(names_in(solver_names()), "admm"))
+      .type("NAME")
+      .where(one_of(names_in(solver_names())));
+  options.add("--basis", o.basis, "where the picture is sparse: " + choices(names_in(basis_names()), "identity"))
+      .type("NAME")
+      .where(one_of(names_in(basis_names())));
+  options.flag("--nonnegative", o.nonnegative, "constraint x >= 0");
+  options.add("--box", o.box, "constraint LO <= x <= HI, such as 0,1")
+      .type("LO,HI")
+      .excludes("--nonnegative")
+      .where([](const std::string& text) {
         return interval_from(text) ? std::string()
                                    : "is '" + text + "', expected two finite numbers with the lower first, such as 0,1";
-      }));
+      });
   const auto not_negative = [](double v) { return v >= 0.0; };
-  auto* lambda = command.add_option("--lambda", o.lambda, "weight of the penalty, by hand")
-                     ->type_name("V")
-                     ->check(number_where(not_negative, "a finite number of 0 or more"));
-  auto* sigma =
-      command.add_option("--sigma", o.sigma, "noise of a sample (of weight 1) in white pixels: lambda by rule")
-          ->type_name("V")
-          ->excludes(lambda)
-          ->check(number_where(not_negative, "a finite number of 0 or more"));
-  command
-      .add_flag("--lambda-from-samples", o.lambda_from_samples,
-                "choose among six multiples of the rule's lambda by the risk that the first frame shows; costs twelve "
-                "frames")
-      ->needs(sigma);
-  command
-      .add_option("--epsilon", o.epsilon,
-                  "adm: min ||Psi x||_1 subject to ||W^(1/2)(Ax-y)|| <= V; omp: stop there; in white pixels")
-      ->type_name("V")
-      ->check(number_where(not_negative, "a finite number of 0 or more"));
-  command
-      .add_option(
+  options.add("--lambda", o.lambda, "weight of the penalty, by hand")
+      .type("V")
+      .where(number_where(not_negative, "a finite number of 0 or more"));
+  options.add("--sigma", o.sigma, "noise of a sample (of weight 1) in white pixels: lambda by rule")
+      .type("V")
+      .excludes("--lambda")
+      .where(number_where(not_negative, "a finite number of 0 or more"));
+  options
+      .flag("--lambda-from-samples", o.lambda_from_samples,
+            "choose among six multiples of the rule's lambda by the risk that the first frame shows; costs twelve "
+            "frames")
+      .needs("--sigma");
+  options
+      .add("--epsilon", o.epsilon,
+           "adm: min ||Psi x||_1 subject to ||W^(1/2)(Ax-y)|| <= V; omp: stop there; in white pixels")
+      .type("V")
+      .where(number_where(not_negative, "a finite number of 0 or more"));
+  options
+      .add(
           "--rank", o.rank,
           "tsvd: how many singular values to keep (with --sigma: by rule); pdhg: how many modes to treat exactly (400)")
-      ->type_name("R")
-      ->check(whole_number(1, 1'000'000));
+      .type("R")
+      .where(whole_number(1, 1'000'000));
 }
 
-void add_plan(CLI::App& command, ReconstructOptions& o) {
-  command.add_option("--iterations", o.iterations, "exactly this many a frame (default 100); omp: elements, at most")
-      ->type_name("K")
-      ->check(whole_number(1, 1'000'000));
-  command.add_option("--rho", o.rho, "penalty of admm and adm (default: by rule)")
-      ->type_name("V")
-      ->check(number_where([](double v) { return v > 0.0; }, "a finite number above 0"));
-  command
-      .add_option(
-          "--reweight", o.reweight,
-          "admm in pixels: as many iterations again with weights 2V / (|x| + V), for pictures of few lit pixels; "
-          "V about a tenth of their brightness")
-      ->type_name("V")
-      ->check(number_where([](double v) { return v > 0.0; }, "a finite number above 0"));
-  command.add_option("--relaxation", o.relaxation, "of admm and cp (default 1.7)")
-      ->type_name("V")
-      ->check(number_where([](double v) { return v > 0.0 && v < 2.0; }, "a number above 0 and below 2"));
-  command.add_option("--precision", o.precision, "f32 (default) or f64")
-      ->type_name("NAME")
-      ->check(one_of({"f32", "f64"}, {}));
-  command
-      .add_option(
-          "--start", o.start,
-          "with pdhg: cold (default), or warm: a frame goes on from the last one unless it has changed too much")
-      ->type_name("NAME")
-      ->check(one_of({"cold", "warm"}, {}));
-  command
-      .add_option("--operator", o.op,
-                  "how A is applied: auto (default: the quickest that keeps every digit), dense, csr, running-sums, "
-                  "dense-runs, dense-runs-bf16 or dense-runs-int8, which round the response")
-      ->type_name("NAME")
-      ->check(one_of(operator_words(), {}));
-  command.add_option("--threads", o.threads, "that share a frame's work (default 1); the picture is the same")
-      ->type_name("T")
-      ->check(whole_number(1, recon::WorkerThreads::most));
-  command.add_flag("--as-published", o.as_published,
-                   "adm as YALL1 v1.4 does it, for comparison: it may stop where there is no solution");
-  command.add_flag("--json", o.json, "print one object with every figure");
+void add_plan(OptionList& options, ReconstructOptions& o) {
+  options.add("--iterations", o.iterations, "exactly this many a frame (default 100); omp: elements, at most")
+      .type("K")
+      .where(whole_number(1, 1'000'000));
+  options.add("--rho", o.rho, "penalty of admm and adm (default: by rule)")
+      .type("V")
+      .where(number_where([](double v) { return v > 0.0; }, "a finite number above 0"));
+  options
+      .add("--reweight", o.reweight,
+           "admm in pixels: as many iterations again with weights 2V / (|x| + V), for pictures of few lit pixels; "
+           "V about a tenth of their brightness")
+      .type("V")
+      .where(number_where([](double v) { return v > 0.0; }, "a finite number above 0"));
+  options.add("--relaxation", o.relaxation, "of admm and cp (default 1.7)")
+      .type("V")
+      .where(number_where([](double v) { return v > 0.0 && v < 2.0; }, "a number above 0 and below 2"));
+  options.add("--precision", o.precision, "f32 (default) or f64").type("NAME").where(one_of({"f32", "f64"}));
+  options
+      .add("--start", o.start,
+           "with pdhg: cold (default), or warm: a frame goes on from the last one unless it has changed too much")
+      .type("NAME")
+      .where(one_of({"cold", "warm"}));
+  options
+      .add("--operator", o.op,
+           "how A is applied: auto (default: the quickest that keeps every digit), " +
+               choices(names_in(operator_names())) + ", which round the response")
+      .type("NAME")
+      .where(one_of(operator_words()));
+  options.add("--threads", o.threads, "that share a frame's work (default 1); the picture is the same")
+      .type("T")
+      .where(whole_number(1, recon::WorkerThreads::most));
+  options.flag("--as-published", o.as_published,
+               "adm as YALL1 v1.4 does it, for comparison: it may stop where there is no solution");
+  options.json("print one object with every figure");
 }
 
 hal::Result<void> usage(const char* option, std::string sentence) {
@@ -167,10 +155,10 @@ hal::Result<void> check_not_input(const char* option, const std::string& file, c
 
 }  // namespace
 
-void add_reconstruct_options(CLI::App& command, ReconstructOptions& options) {
-  add_files(command, options);
-  add_problem(command, options);
-  add_plan(command, options);
+void add_reconstruct_options(OptionList& options, ReconstructOptions& request) {
+  add_files(options, request);
+  add_problem(options, request);
+  add_plan(options, request);
 }
 
 std::string reconstruct_footer() {

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
-#include "firmware/app/options/value_text.hpp"
+#include "firmware/app/option_list.hpp"
 #include "hal/result.hpp"
 #include "recon/reconstructor.hpp"
 
@@ -37,10 +36,9 @@ struct ReconstructOptions {
   bool as_published = false;      ///< adm
   std::optional<double> rho;
   std::optional<double> relaxation;
-  bool json = false;
 };
 
-void add_reconstruct_options(CLI::App& command, ReconstructOptions& options);
+void add_reconstruct_options(OptionList& options, ReconstructOptions& request);
 
 /// What goes with what, the files, and an example.
 [[nodiscard]] std::string reconstruct_footer();

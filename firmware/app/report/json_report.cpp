@@ -27,6 +27,12 @@ Json json_of(const hal::Error& error) {
   return {{"error", {{"code", hal::name(error.code)}, {"place", error.place}, {"sentence", error.sentence}}}};
 }
 
+std::string with_error(const std::string& json, const hal::Error& error) {
+  Json object = Json::parse(json, nullptr, false);
+  object.update(json_of(error));
+  return json_text(object);
+}
+
 hal::Result<void> print_text(const std::string& text, std::FILE* to, const std::string& name) {
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), to) == text.size() && std::fflush(to) == 0) return {};

@@ -22,6 +22,9 @@ using Json = nlohmann::ordered_json;
 /// {"error": {"code": .., "place": .., "sentence": ..}}: what `--json` prints when a command fails.
 [[nodiscard]] Json json_of(const hal::Error& error);
 
+/// The object that `json` is the text of, with the error's member: how a report tells what went wrong after it.
+[[nodiscard]] std::string with_error(const std::string& json, const hal::Error& error);
+
 /// Writes `text` and flushes. Errors: no_space or io when the file (stdout on a full disk, a closed pipe) refuses it;
 /// `name` says which.
 [[nodiscard]] hal::Result<void> print_text(const std::string& text, std::FILE* to = stdout,

@@ -3,19 +3,13 @@
 #include <cmath>
 #include <string>
 
+#include "firmware/app/option_list.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
 namespace {
 
-using hal::ErrorCode;
-using hal::fail;
 using hal::Result;
-
-Result<void> need(bool ok, const std::string& option, const std::string& sentence) {
-  if (ok) return {};
-  return fail(ErrorCode::usage, option, sentence);
-}
 
 template <class Number>
 Result<void> within(const std::string& option, const std::optional<Number>& value, double least, bool open,
@@ -51,28 +45,24 @@ Result<void> RunOptions::check() const {
         need(!(deadline_ms && replays() && waits_for_frames()), "--deadline",
              "needs --pace recorded and no --lossless with --replay, since otherwise frames wait for as long as it "
              "takes"),
-        need(replays() || !replay_pace, "--pace", "needs --replay FILE"),
+        need(replays() || replay_pace.empty(), "--pace", "needs --replay FILE"),
         need(!replays() || record.empty(), "--record", "cannot go with --replay: the frames are in that file already"),
         need(sheet.empty() || knows_scene(), "--sheet",
              "needs --scene with --replay: it compares the picture with the scene that was recorded"),
         need(!(json && show.value_or(false)), "--show",
              "cannot go with --json: both would write to the standard output"),
-        need(!(json && table != TableOutput::no), "--table",
-             "cannot go with --json: both would write to the standard output"),
-        need(out.empty() || output_format() != OutputFormat::none, "--out", "does nothing with --format none"),
-        need(!out.empty() || !format || *format == OutputFormat::none, "--format", "needs a folder: add --out DIR"),
+        need(!json || table.empty(), "--table", "cannot go with --json: both would write to the standard output"),
+        need(out.empty() || output_format() != "none", "--out", "does nothing with --format none"),
+        need(!out.empty() || format.empty() || format == "none", "--format", "needs a folder: add --out DIR"),
         need(!board.empty(), "--board", "is missing, for example --board boards/sim-8x8")}) {
     if (!checked) return checked;
   }
   return {};
 }
 
-bool RunOptions::waits_for_frames() const noexcept {
-  return lossless || (replays() && replay_pace.value_or(recording::ReplayPace::fast) == recording::ReplayPace::fast);
-}
-
-OutputFormat RunOptions::output_format() const noexcept {
-  return format.value_or(out.empty() ? OutputFormat::none : OutputFormat::png);
+std::string RunOptions::output_format() const {
+  if (!format.empty()) return format;
+  return out.empty() ? "none" : "png";
 }
 
 }  // namespace compueye::firmware

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -10,12 +9,9 @@
 
 namespace compueye::firmware {
 
-enum class OutputFormat : std::uint8_t { png, png16, npy, none };
-enum class TableOutput : std::uint8_t { no, header, row, both };
-
 /// What `compueye run` was asked for.
 struct RunOptions {
-  std::filesystem::path board;
+  std::string board;
   std::optional<std::int64_t> frames;  ///< delivered pictures, 0 = until stopped; absent: the board's frames_per_scene
   std::optional<double> deadline_ms;   ///< > 0
   std::string scene;                   ///< empty: the board's
@@ -23,28 +19,33 @@ struct RunOptions {
   std::int64_t scene_seed = 0;         ///< of a built-in scene, >= 0
   std::optional<double> distance_mm;   ///< of the object plane and the scene on it
   std::optional<double> scene_distance_mm;  ///< of the scene alone
-  std::filesystem::path out;                ///< folder for pictures
-  std::optional<OutputFormat> format;       ///< absent: png with `out`, else none
+  std::string out;                          ///< folder for pictures
+  std::string format;                       ///< png, png16, npy or none; empty: png with `out`, else none
   std::optional<bool> show;                 ///< absent: when stdout is a terminal
   bool lossless = false;
-  std::filesystem::path replay;                      ///< a recording instead of the board's eye; empty: none
-  std::optional<recording::ReplayPace> replay_pace;  ///< absent: fast
-  std::filesystem::path record;                      ///< where the frames go besides; empty: nowhere
+  std::string replay;       ///< a recording instead of the board's eye; empty: none
+  std::string replay_pace;  ///< fast or recorded; empty: fast
+  std::string record;       ///< where the frames go besides; empty: nowhere
   std::optional<std::int64_t> iterations;
   std::optional<std::int64_t> threads;
   std::optional<double> lambda;
   std::optional<double> sigma;
-  std::filesystem::path sheet;
-  std::filesystem::path report;
-  TableOutput table = TableOutput::no;
-  bool json = false;
+  std::string sheet;
+  std::string report;
+  std::string table;  ///< header, row or both; empty: no table
+  bool json = false;  ///< the report is to be an object
 
   /// Contradictions and values out of range. Error usage names the option.
   [[nodiscard]] hal::Result<void> check() const;
-  [[nodiscard]] OutputFormat output_format() const noexcept;
+  [[nodiscard]] std::string output_format() const;
+  [[nodiscard]] recording::ReplayPace pace() const noexcept {
+    return replay_pace == "recorded" ? recording::ReplayPace::recorded : recording::ReplayPace::fast;
+  }
   [[nodiscard]] bool replays() const noexcept { return !replay.empty(); }
   /// Every frame is waited for: as asked, and when a recording is replayed as fast as it can be.
-  [[nodiscard]] bool waits_for_frames() const noexcept;
+  [[nodiscard]] bool waits_for_frames() const noexcept {
+    return lossless || (replays() && pace() == recording::ReplayPace::fast);
+  }
   /// Whether the scene in front of the eye is known, to compare pictures with: a recording's is only when it is named.
   [[nodiscard]] bool knows_scene() const noexcept { return !replays() || !scene.empty(); }
 };

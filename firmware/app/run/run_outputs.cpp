@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <filesystem>
 #include <system_error>
 
 #include "firmware/files/atomic_file.hpp"
@@ -9,62 +10,49 @@
 #include "firmware/sinks/npy_sink.hpp"
 #include "firmware/sinks/png_sequence_sink.hpp"
 #include "firmware/sinks/terminal_sink.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path npy_file(const RunOptions& options) {
-  return options.out / "frames.npy";
+std::string npy_file(const RunOptions& options) {
+  return options.out + "/frames.npy";
 }
 
-hal::Result<void> make_folder(const fs::path& folder) {
+/// In a folder that is made for it.
+hal::Result<void> try_output_below(const std::string& file) {
+  const fs::path folder = fs::path(file).parent_path();
   std::error_code error;
-  fs::create_directories(folder, error);
+  if (!folder.empty()) fs::create_directories(folder, error);
   if (error) return tl::unexpected(file_error(error.value(), folder, "cannot be made to write into"));
-  return {};
+  return try_output(file);
 }
 
 }  // namespace
 
-hal::Result<void> try_output_file(const fs::path& file) {
-  if (file.empty()) return {};
-  if (file.has_parent_path()) {
-    if (auto made = make_folder(file.parent_path()); !made) return made;
-  }
-  // Goes away again with the object.
-  return AtomicFile::create(file).map([](const AtomicFile&) {});
-}
-
 hal::Result<void> try_outputs(const RunOptions& options) {
-  if (!options.out.empty()) {
-    if (auto tried = try_output_file(npy_file(options)); !tried) return tried;
-  }
-  return try_output_file(options.sheet).and_then([&] { return try_output_file(options.report); });
+  if (!options.out.empty()) TRY(try_output_below(npy_file(options)));
+  TRY(try_output_below(options.sheet));
+  return try_output_below(options.report);
 }
 
 bool shows_pictures(const RunOptions& options) {
   if (options.show) return *options.show;
-  return !options.json && options.table == TableOutput::no && ::isatty(STDOUT_FILENO) == 1;
+  return !options.json && options.table.empty() && ::isatty(STDOUT_FILENO) == 1;
 }
 
 std::unique_ptr<FanOutSink> make_sinks(const RunOptions& options, const hal::Clock& clock,
                                        std::vector<std::string>& files) {
   auto sinks = std::make_unique<FanOutSink>();
-  switch (options.output_format()) {
-    case OutputFormat::png:
-    case OutputFormat::png16:
-      sinks->add(
-          std::make_unique<PngSequenceSink>(options.out, options.output_format() == OutputFormat::png16 ? 16 : 8));
-      files.push_back((options.out / "frame-*.png").string());
-      break;
-    case OutputFormat::npy:
-      sinks->add(std::make_unique<NpySink>(npy_file(options)));
-      files.push_back(npy_file(options).string());
-      break;
-    case OutputFormat::none:
-      break;
+  const std::string format = options.output_format();
+  if (format == "npy") {
+    sinks->add(std::make_unique<NpySink>(npy_file(options)));
+    files.push_back(npy_file(options));
+  } else if (format != "none") {
+    sinks->add(std::make_unique<PngSequenceSink>(options.out, format == "png16" ? 16 : 8));
+    files.push_back(options.out + "/frame-*.png");
   }
   if (shows_pictures(options)) {
     TerminalOptions terminal;

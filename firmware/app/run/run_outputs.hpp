@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,9 +14,6 @@ namespace compueye::firmware {
 /// Makes the folders of everything that a run will write and tries whether files can be made there, before minutes of
 /// set-up are spent. Leaves nothing behind but folders. Errors: those of a file that cannot be written.
 [[nodiscard]] hal::Result<void> try_outputs(const RunOptions& options);
-
-/// The same for one file that is written at the end.
-[[nodiscard]] hal::Result<void> try_output_file(const std::filesystem::path& file);
 
 /// Whether pictures go to the terminal.
 [[nodiscard]] bool shows_pictures(const RunOptions& options);

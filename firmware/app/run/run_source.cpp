@@ -6,6 +6,7 @@
 
 #include "firmware/app/recording/recorded_with.hpp"
 #include "firmware/eye/board_source.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 using hal::Result;
@@ -14,31 +15,23 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
                                   std::uint64_t frames, hal::Clock& clock) {
   RunSource made;
   if (options.replays()) {
-    auto replay =
-        recording::ReplaySource::open(options.replay, options.replay_pace.value_or(recording::ReplayPace::fast), clock);
-    if (!replay) return tl::unexpected(std::move(replay.error()));
-    if (auto fits = check_fits((*replay)->describe(), board, options.replay.string()); !fits) {
-      return tl::unexpected(std::move(fits.error()));
-    }
-    made.replay_ = replay->get();
-    made.source_ = std::move(*replay);
+    auto replay = TRY(recording::ReplaySource::open(options.replay, options.pace(), clock));
+    TRY(check_fits(replay->describe(), board, options.replay));
+    made.replay_ = replay.get();
+    made.source_ = std::move(replay);
     return made;
   }
   EyeWanted wanted{scene, static_cast<std::uint64_t>(options.seed), options.lossless, std::nullopt};
   // Without a limit the frames read ahead of the last one would be made only to be thrown away.
   if (options.lossless && frames > 0) wanted.frame_limit = frames;
-  auto eye = board_source(board, std::move(wanted), clock);
-  if (!eye) return tl::unexpected(std::move(eye.error()));
-  made.source_ = std::move(*eye);
+  made.source_ = TRY(board_source(board, std::move(wanted), clock));
   if (options.record.empty()) return made;
   recording::RecordingSettings recording;
   recording.path = options.record;
   recording.settings = RecordedWith{scene.name, options.scene_seed, options.seed}.text(board);
   recording.unix_minus_clock_ns = unix_minus(clock);
   recording.when_full = options.lossless ? recording::WhenFull::wait : recording::WhenFull::skip;
-  auto recorder = recording::RecordingSource::create(std::move(recording), *made.source_, clock);
-  if (!recorder) return tl::unexpected(std::move(recorder.error()));
-  made.recorder_ = std::move(*recorder);
+  made.recorder_ = TRY(recording::RecordingSource::create(std::move(recording), *made.source_, clock));
   return made;
 }
 

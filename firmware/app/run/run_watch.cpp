@@ -1,14 +1,12 @@
 #include "firmware/app/run/run_watch.hpp"
 
 #include <chrono>
-
-#include "firmware/app/report/progress_reporter.hpp"
-#include "hal/clock.hpp"
+#include <utility>
 
 namespace compueye::firmware {
 
-RunWatch::RunWatch(const FrameKeeper& keeper, std::uint64_t frames)
-    : keeper_(keeper), thread_([this, frames] { watch(frames); }) {}
+RunWatch::RunWatch(const FrameKeeper& keeper, std::uint64_t frames, recon::Progress progress)
+    : keeper_(keeper), progress_(std::move(progress)), thread_([this, frames] { watch(frames); }) {}
 
 RunWatch::~RunWatch() {
   {
@@ -21,11 +19,9 @@ RunWatch::~RunWatch() {
 
 void RunWatch::watch(std::uint64_t frames) {
   constexpr std::chrono::milliseconds every{100};
-  const hal::MonotonicClock clock;
-  ProgressReporter progress(clock);
   std::unique_lock lock(mutex_);
   while (!ended_.wait_for(lock, every, [this] { return over_; })) {
-    progress.update("frames", static_cast<double>(keeper_.delivered()), static_cast<double>(frames));
+    progress_("frames", static_cast<double>(keeper_.delivered()), static_cast<double>(frames));
   }
 }
 

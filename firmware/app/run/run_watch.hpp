@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "firmware/app/run/frame_keeper.hpp"
+#include "recon/setup/factor.hpp"
 
 namespace compueye::firmware {
 
@@ -13,8 +14,8 @@ namespace compueye::firmware {
 /// it. From construction to destruction.
 class RunWatch {
  public:
-  /// `frames` to deliver, 0 = unknown. `keeper` must outlive the watch.
-  RunWatch(const FrameKeeper& keeper, std::uint64_t frames);
+  /// `frames` to deliver, 0 = unknown. `keeper` must outlive the watch, which alone uses `progress` meanwhile.
+  RunWatch(const FrameKeeper& keeper, std::uint64_t frames, recon::Progress progress);
   RunWatch(const RunWatch&) = delete;
   RunWatch& operator=(const RunWatch&) = delete;
   ~RunWatch();
@@ -23,6 +24,7 @@ class RunWatch {
   void watch(std::uint64_t frames);
 
   const FrameKeeper& keeper_;
+  recon::Progress progress_;
   std::mutex mutex_;
   std::condition_variable ended_;
   bool over_ = false;

@@ -66,8 +66,6 @@ TEST_CASE("wrong usage ends with exit code 2 and names the option and the value"
   usage({"--distance", "-3"}, {"--distance"});
   usage({"--format", "npy"}, {"--format", "--out"});
   usage({"--format", "gif", "--out", "x"}, {"gif"});
-  usage({"--json", "--show"}, {"--show", "--json"});
-  usage({"--json", "--table", "row"}, {"--table", "--json"});
   usage({"--live", "--lossless"}, {"--lossless", "--live"});
   refuses(compueye::test::compueye({"run"}), 2, {"--board"});
 }
@@ -80,9 +78,23 @@ TEST_CASE("a scene that saturates the sensor is refused, because nothing would e
 
 TEST_CASE("with --json a failure is an object on stdout too") {
   const CopiedBoard board;
-  const Ended ended = board.run({"--scene", "phantm", "--json"});
-  CHECK(ended.exit_code == 1);
-  const auto json = nlohmann::json::parse(ended.out, nullptr, false);
-  REQUIRE_FALSE(json.is_discarded());
-  CHECK(contains(json["error"]["sentence"].get<std::string>(), "phantom"));
+  struct Case {
+    std::vector<std::string> arguments;
+    int exit_code;
+    std::string code, place;
+  };
+  for (const Case& each : {Case{{"--scene", "phantm"}, 1, "not found", "scene"}, Case{{"--show"}, 2, "usage", "--show"},
+                           Case{{"--table", "row"}, 2, "usage", "--table"}}) {
+    auto arguments = each.arguments;
+    arguments.emplace_back("--json");
+    const Ended ended = board.run(arguments);
+    CAPTURE(ended.out);
+    CHECK(ended.exit_code == each.exit_code);
+    CHECK(lines(ended.err) == 1);
+    const auto json = nlohmann::json::parse(ended.out, nullptr, false);
+    REQUIRE_FALSE(json.is_discarded());
+    CHECK(json["error"]["code"] == each.code);
+    CHECK(json["error"]["place"] == each.place);
+    CHECK(contains(ended.err, json["error"]["sentence"].get<std::string>()));
+  }
 }

@@ -36,10 +36,15 @@ std::string board(const std::string& name) {
   return (std::filesystem::path(COMPUEYE_SOURCE_DIR) / "boards" / name).string();
 }
 
+hal::Result<void> run(const RunOptions& options) {
+  firmware::Session session;
+  return firmware::run_board(options, session);
+}
+
 /// What a run that has to succeed reports.
 Json report_of(RunOptions options, const test::TemporaryFolder& folder) {
-  options.report = folder.path() / "report.json";
-  const auto ran = firmware::run_session(options);
+  options.report = (folder.path() / "report.json").string();
+  const auto ran = run(options);
   REQUIRE_MESSAGE(ran.has_value(), ran.error().text());
   Json json = Json::parse(test::bytes_of(options.report), nullptr, false);
   std::filesystem::remove(options.report);
@@ -120,21 +125,22 @@ TEST_CASE("program: what was recorded on USB replays into the same pictures ever
   UsbBench::wait_for_boot();
   const test::TemporaryFolder folder;
   RunOptions options = options_of(copied("generic-usb", folder), 40);
-  options.format = firmware::OutputFormat::png16;
-  options.record = folder.path() / "eye.rec";
-  options.out = folder.path() / "live";
+  options.format = "png16";
+  options.record = (folder.path() / "eye.rec").string();
+  options.out = (folder.path() / "live").string();
   report_of(options, folder);
   usb.unplug();
   options.replay = options.record;
   options.record.clear();
   options.frames = 0;  // live, the newest frames won; a replay takes all
   for (const char* again : {"first", "second"}) {
-    options.out = folder.path() / again;
+    options.out = (folder.path() / again).string();
     report_of(options, folder);
     std::size_t compared = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path() / "live")) {
       CAPTURE(entry.path().filename());
-      const bool same = test::bytes_of(entry.path()) == test::bytes_of(options.out / entry.path().filename());
+      const bool same =
+          test::bytes_of(entry.path()) == test::bytes_of(std::filesystem::path(options.out) / entry.path().filename());
       CHECK(same);
       ++compared;
     }
@@ -171,7 +177,7 @@ TEST_CASE("program: a run goes on when the eye is plugged in again") {
 
 TEST_CASE("program: an eye that is not there, or does not fit the board, is an error that says so") {
   HIL_TESTBED(testbed);
-  const auto absent = firmware::run_session(options_of(board("generic-usb"), 1));
+  const auto absent = run(options_of(board("generic-usb"), 1));
   REQUIRE_FALSE(absent);
   CHECK(absent.error().code == hal::ErrorCode::not_found);
   protocol::EmulatorSettings settings = eye_of("CE-SMALL", protocol::EmulatedBus::usb);
@@ -180,14 +186,14 @@ TEST_CASE("program: an eye that is not there, or does not fit the board, is an e
   UsbPort usb(testbed, settings);
   usb.plug();
   UsbBench::wait_for_boot();
-  const auto small = firmware::run_session(options_of(board("generic-usb"), 1));
+  const auto small = run(options_of(board("generic-usb"), 1));
   REQUIRE_FALSE(small);
   CHECK(small.error().code == hal::ErrorCode::mismatch);
   CHECK(small.error().text().find("CE-SMALL") != std::string::npos);
   CHECK(small.error().text().find("16 channels") != std::string::npos);
   RunOptions lossless = options_of(board("generic-usb"), 1);
   lossless.lossless = true;
-  CHECK(firmware::run_session(lossless).error().code == hal::ErrorCode::usage);
+  CHECK(run(lossless).error().code == hal::ErrorCode::usage);
 }
 
 }  // namespace compueye::hil

@@ -1,0 +1,124 @@
+#include "firmware/app/cli.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <deque>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "firmware/text/nearest_name.hpp"
+#include "firmware/text/visible_text.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+template <class T>
+constexpr bool is_list = std::is_same_v<T, std::vector<std::string>> || std::is_same_v<T, std::vector<double>>;
+
+CLI::Option* add(CLI::App& app, const Option& row, const Target& target) {
+  return std::visit(
+      [&](auto* value) {
+        CLI::Option* option = app.add_option(row.name, *value, row.meaning);
+        if constexpr (is_list<std::remove_pointer_t<decltype(value)>>) option->delimiter(',');
+        return option;
+      },
+      target);
+}
+
+CLI::Option* add(CLI::App& app, const Option& row, const Switch& flag) {
+  return app.add_flag_callback(
+      row.name, [flag] { std::visit([&](auto* target) { *target = flag.value; }, flag.target); }, row.meaning);
+}
+
+void add(CLI::App& app, const OptionList& options) {
+  for (const Option& row : options.rows()) {
+    CLI::Option* option = std::visit([&](const auto& target) { return add(app, row, target); }, row.target);
+    if (!row.type_name.empty()) option->type_name(row.type_name);
+    if (row.check) option->check(CLI::Validator([check = row.check](std::string& text) { return check(text); }, ""));
+    option->required(row.is_required);
+    for (const std::string& other : row.excluded) option->excludes(app.get_option(other));
+    for (const std::string& other : row.needed) option->needs(app.get_option(other));
+  }
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+std::string unknown(std::string_view what, const std::string& given, const std::vector<std::string>& known) {
+  const std::vector<std::string_view> views(known.begin(), known.end());
+  const std::string name = given.substr(0, given.find('='));
+  return "'" + excerpt(name) + "' is not " + std::string(what) + suggestion(name, views);
+}
+
+/// Empty when every option and command is known.
+std::string unknown_name(const CLI::App& app, const CLI::App& command, std::span<const Command* const> commands) {
+  const std::vector<std::string> extras = app.remaining(true);
+  const auto option =
+      std::find_if(extras.begin(), extras.end(), [](const std::string& e) { return e.starts_with("-"); });
+  if (option != extras.end()) return unknown("an option", *option, option_names(command));
+  if (&command != &app || extras.empty()) return {};
+  std::vector<std::string> names;
+  for (const Command* each : commands) names.emplace_back(each->name);
+  return unknown("a command", extras.front(), names);
+}
+
+hal::Error usage_error(const CLI::App& app, const CLI::ParseError& error, std::span<const Command* const> commands) {
+  const CLI::App* command = &app;
+  std::string path = "compueye";
+  for (const CLI::App* sub : app.get_subcommands()) {
+    command = sub;
+    path += " " + sub->get_name();
+  }
+  std::string sentence = unknown_name(app, *command, commands);
+  if (sentence.empty()) sentence = error.what();
+  std::replace(sentence.begin(), sentence.end(), '\n', ' ');
+  return {hal::ErrorCode::usage, {}, sentence + "; see " + path + " --help"};
+}
+
+/// --help and --version end the parsing as if they were errors.
+Action print_instead(const CLI::App& app, const CLI::ParseError& asked) {
+  std::ostringstream text;
+  app.exit(asked, text, text);
+  return [text = text.str()](Session& session) { return session.print(text); };
+}
+
+}  // namespace
+
+CommandLine read_command_line(int argc, const char* const* argv, std::span<const Command* const> commands) {
+  CLI::App app{"The runtime of a computational compound eye: from photodiodes to pictures in real time."};
+  app.set_version_flag("--version", COMPUEYE_VERSION);
+  app.require_subcommand(1);
+  app.footer("Example: compueye run --board boards/sim-8x8 --frames 20\nEvery subcommand has its own --help.");
+  CommandLine line{Action{}, {}, false};
+  std::deque<OptionList> options;
+  for (const Command* command : commands) {
+    CLI::App* sub = app.add_subcommand(std::string(command->name), std::string(command->summary));
+    OptionList& list = options.emplace_back();
+    Action action = command->declare(list);
+    add(*sub, list);
+    sub->footer(command->footer());
+    sub->callback([&line, &list, command, action = std::move(action)] {
+      line = {action, command->on_signal, list.wants_json()};
+    });
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return {print_instead(app, error), OnSignal::ends_the_process, false};
+    const bool json = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
+    return {tl::unexpected(usage_error(app, error, commands)), OnSignal::ends_the_process, json};
+  }
+  return line;
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,18 @@
+#include <array>
+
+#include "firmware/app/command.hpp"
+
+namespace compueye::firmware {
+
+extern const Command run_command, simulate_command, response_command, reconstruct_command, compare_command,
+    pareto_command, inspect_command, record_command, replay_command, devices_command;
+
+std::span<const Command* const> commands() noexcept {
+  static constexpr std::array rows{
+      &run_command,    &simulate_command, &response_command, &reconstruct_command, &compare_command,
+      &pareto_command, &inspect_command,  &record_command,   &replay_command,      &devices_command,
+  };
+  return rows;
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,116 @@
+#include "firmware/app/option_list.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+#include "firmware/text/nearest_name.hpp"
+#include "firmware/text/visible_text.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+template <class T>
+std::optional<T> whole(std::string_view text) noexcept {
+  // from_chars knows no plus sign, but people write one.
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+struct Halves {
+  std::string_view first, second;
+};
+
+std::optional<Halves> split(std::string_view text, char at) noexcept {
+  const auto place = text.find(at);
+  if (place == std::string_view::npos) return std::nullopt;
+  return Halves{text.substr(0, place), text.substr(place + 1)};
+}
+
+}  // namespace
+
+Option& OptionList::put(std::string name, std::variant<Target, Switch> target, std::string meaning) {
+  return rows_.emplace_back(Option{std::move(name), target, std::move(meaning), {}, {}, {}, {}, false});
+}
+
+Check number_where(std::function<bool(double)> accepts, std::string expected) {
+  return [accepts = std::move(accepts), expected = std::move(expected)](const std::string& text) {
+    const auto value = number_from(text);
+    if (value && accepts(*value)) return std::string();
+    return fmt::format("is '{}', expected {}", excerpt(text), expected);
+  };
+}
+
+Check whole_number(long least, long most) {
+  return [least, most](const std::string& text) {
+    const auto value = whole<long>(text);
+    if (value && *value >= least && *value <= most) return std::string();
+    return fmt::format("is '{}', expected a whole number from {} to {}", excerpt(text), least, most);
+  };
+}
+
+Check one_of(std::vector<std::string_view> known) {
+  return [known = std::move(known)](const std::string& text) {
+    if (std::find(known.begin(), known.end(), text) != known.end()) return std::string();
+    const auto near = nearest_name(text, known);
+    return fmt::format("is '{}', expected one of {}{}", excerpt(text), fmt::join(known, ", "),
+                       near ? fmt::format("; did you mean '{}'?", *near) : "");
+  };
+}
+
+std::string choices(const std::vector<std::string_view>& known, std::string_view usual) {
+  std::string text;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (i > 0) text += i + 1 == known.size() ? " or " : ", ";
+    text += known[i];
+    if (known[i] == usual) text += " (default)";
+  }
+  return text;
+}
+
+Check picture_size() {
+  return [](const std::string& text) {
+    return picture_size_from(text) ? std::string() : "is '" + text + "', expected rows and columns such as 16x16";
+  };
+}
+
+hal::Result<void> need(bool ok, std::string_view option, std::string sentence) {
+  if (ok) return {};
+  return hal::fail(hal::ErrorCode::usage, std::string(option), std::move(sentence));
+}
+
+hal::Result<void> need_length(std::string_view option, const std::optional<double>& mm) {
+  const bool ok = !mm || (std::isfinite(*mm) && *mm > 0.0 && *mm <= 1e6);
+  return need(ok, option, fmt::format("is {}, expected mm above 0 and at most 1000000", mm.value_or(0.0)));
+}
+
+std::optional<double> number_from(std::string_view text) noexcept {
+  const auto value = whole<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<PictureSize> picture_size_from(std::string_view text) noexcept {
+  const auto halves = split(text, 'x');
+  if (!halves) return std::nullopt;
+  const auto rows = whole<int>(halves->first), cols = whole<int>(halves->second);
+  if (!rows || !cols || *rows < 1 || *cols < 1) return std::nullopt;
+  if (static_cast<std::int64_t>(*rows) * *cols > std::numeric_limits<int>::max()) return std::nullopt;
+  return PictureSize{*rows, *cols};
+}
+
+std::optional<Interval> interval_from(std::string_view text) noexcept {
+  const auto halves = split(text, ',');
+  if (!halves) return std::nullopt;
+  const auto lo = number_from(halves->first), hi = number_from(halves->second);
+  if (!lo || !hi || !(*lo < *hi)) return std::nullopt;
+  return Interval{*lo, *hi};
+}
+
+}  // namespace compueye::firmware

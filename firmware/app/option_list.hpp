@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// Complains about the text of a value, "is 'x', expected ..."; nothing to complain of: empty.
+using Check = std::function<std::string(const std::string&)>;
+
+/// Where the value of an option goes once it is understood. Lists take commas between their elements.
+using Target = std::variant<std::string*, int*, std::int64_t*, double*, std::optional<std::string>*,
+                            std::optional<int>*, std::optional<std::int64_t>*, std::optional<std::uint64_t>*,
+                            std::optional<double>*, std::vector<std::string>*, std::vector<double>*>;
+
+/// An option without a value: what is set to what.
+struct Switch {
+  std::variant<bool*, std::optional<bool>*> target;
+  bool value = true;
+};
+
+/// An option of a command, as a row: whoever reads command lines makes of it what it needs.
+struct Option {
+  std::string name;  ///< "--board"; without dashes: a word that needs no name
+  std::variant<Target, Switch> target;
+  std::string meaning;
+  std::string type_name;  ///< of the value in --help; empty: by the target
+  Check check;
+  std::vector<std::string> excluded;
+  std::vector<std::string> needed;
+  bool is_required = false;
+
+  Option& type(std::string word) { return type_name = std::move(word), *this; }
+  Option& where(Check complains) { return check = std::move(complains), *this; }
+  Option& excludes(std::string other) { return excluded.push_back(std::move(other)), *this; }
+  Option& needs(std::string other) { return needed.push_back(std::move(other)), *this; }
+  Option& required() { return is_required = true, *this; }
+};
+
+/// The options of a command in the order of its --help. What they point to must outlive the reading of the line.
+class OptionList {
+ public:
+  template <class Value>
+  Option& add(std::string name, Value& value, std::string meaning) {
+    return put(std::move(name), Target(&value), std::move(meaning));
+  }
+  template <class Value>
+  Option& flag(std::string name, Value& target, std::string meaning, bool value = true) {
+    return put(std::move(name), Switch{&target, value}, std::move(meaning));
+  }
+  /// --json, which every command has: see Session::print().
+  Option& json(std::string meaning) { return flag("--json", wants_json_, std::move(meaning)); }
+
+  [[nodiscard]] const std::deque<Option>& rows() const noexcept { return rows_; }
+  [[nodiscard]] bool wants_json() const noexcept { return wants_json_; }
+
+ private:
+  Option& put(std::string name, std::variant<Target, Switch> target, std::string meaning);
+
+  std::deque<Option> rows_;  // whose references stay
+  bool wants_json_ = false;
+};
+
+// Checks whose sentence says what was given and what was expected.
+
+/// A finite number for which `accepts` is true; `expected` continues "is 'x', expected".
+[[nodiscard]] Check number_where(std::function<bool(double)> accepts, std::string expected);
+/// A whole number from `least` to `most`.
+[[nodiscard]] Check whole_number(long least, long most);
+/// One of `known`; for any other name the nearest is suggested.
+[[nodiscard]] Check one_of(std::vector<std::string_view> known);
+/// "admm (default), adm or cp": the words of one_of() for the meaning of an option.
+[[nodiscard]] std::string choices(const std::vector<std::string_view>& known, std::string_view usual = {});
+/// Rows and columns of a picture.
+[[nodiscard]] Check picture_size();
+
+/// Error usage at `option` unless `ok`: for what no single value can tell.
+[[nodiscard]] hal::Result<void> need(bool ok, std::string_view option, std::string sentence);
+/// A length in mm, where one is given.
+[[nodiscard]] hal::Result<void> need_length(std::string_view option, const std::optional<double>& mm);
+
+// Values as people type them after an option; nothing when the text is anything else, in part or as a whole.
+
+/// A finite decimal number, "0.5", "-3", "1e-6".
+[[nodiscard]] std::optional<double> number_from(std::string_view text) noexcept;
+
+struct PictureSize {
+  int rows = 0;  ///< H >= 1
+  int cols = 0;  ///< W >= 1
+};
+/// "16x16", rows first; at most 2^31 - 1 pixels.
+[[nodiscard]] std::optional<PictureSize> picture_size_from(std::string_view text) noexcept;
+
+struct Interval {
+  double lo = 0.0;
+  double hi = 0.0;  ///< > lo
+};
+/// "0,1"
+[[nodiscard]] std::optional<Interval> interval_from(std::string_view text) noexcept;
+
+}  // namespace compueye::firmware
