@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "drivers/device/device_source.hpp"
-#include "drivers/protocol/hid_report.hpp"
 
 namespace compueye::device {
 namespace {
@@ -177,8 +176,7 @@ hal::Result<void> DeviceSource::look_at_status(std::int64_t until_ns) {
 
 hal::Result<void> DeviceSource::fetch_descriptor(std::int64_t until_ns) {
   if (!pages_) {
-    pages_.emplace(settings_.bus == DeviceBus::hid ? protocol::hid_page_bytes : protocol::usb_page_bytes,
-                   transport_->describe().bus);
+    pages_.emplace(settings_.bus->page_bytes, transport_->describe().bus);
   }
   if (auto page = requests_.page(*pages_, until_ns); !page) return page;
   if (!pages_->complete()) return {};

@@ -5,8 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "drivers/protocol/hid_report.hpp"
-
 namespace compueye::device {
 namespace {
 
@@ -54,16 +52,15 @@ hal::Result<void> check_settings(const DeviceSettings& s) {
 
 hal::Result<protocol::Configuration> configuration_for(const DeviceSettings& settings,
                                                        const protocol::DeviceDescriptor& device) {
-  if (settings.bus == DeviceBus::hid &&
-      (device.channels > protocol::hid_most_channels || device.bits > protocol::hid_bits)) {
+  const protocol::Bus& bus = *settings.bus;
+  if (!bus.carries(device)) {
     return hal::fail(hal::ErrorCode::unsupported, device.serial,
                      "the eye has " + std::to_string(device.channels) + " channels of " + std::to_string(device.bits) +
-                         " bits; HID carries at most " + std::to_string(protocol::hid_most_channels) + " of " +
-                         std::to_string(protocol::hid_bits) + ", so connect it by USB");
+                         " bits; " + std::string(bus.title) + " carries at most " + std::to_string(bus.most_channels) +
+                         " of " + std::to_string(bus.most_bits) + ", so connect it by USB");
   }
   protocol::Configuration wanted;
-  const auto format =
-      settings.bus == DeviceBus::hid ? SampleFormat::u12 : shortest_format(device).value_or(SampleFormat::u16);
+  const SampleFormat format = bus.only_format.value_or(shortest_format(device).value_or(SampleFormat::u16));
   wanted.format = settings.format.value_or(format);
   if (protocol::most_bits(wanted.format) < device.bits) {
     return out_of_range(device.serial, "samples of " + std::to_string(device.bits) + " bits do not fit " +

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "drivers/device/back_off.hpp"
-#include "drivers/device/stream_reader.hpp"
+#include "drivers/protocol/bus.hpp"
 #include "drivers/protocol/configuration.hpp"
 #include "drivers/protocol/descriptor.hpp"
 #include "hal/result.hpp"
@@ -14,10 +14,10 @@ namespace compueye::device {
 
 /// How to run an eye.
 struct DeviceSettings {
-  DeviceBus bus = DeviceBus::usb;  ///< what the transport is
-  std::string serial;              ///< which eye; empty: the one that is there first, and then only that one
-  double frame_rate_hz = 100.0;    ///< within the device's limits; rounded to 0.001
-  std::int64_t exposure_ns = 0;    ///< within the device's limits, at most the frame period; 0: as long as both allow
+  const protocol::Bus* bus = &protocol::usb_bus;  ///< what the transport is; never null
+  std::string serial;            ///< which eye; empty: the one that is there first, and then only that one
+  double frame_rate_hz = 100.0;  ///< within the device's limits; rounded to 0.001
+  std::int64_t exposure_ns = 0;  ///< within the device's limits, at most the frame period; 0: as long as both allow
   std::optional<protocol::SampleFormat> format;  ///< nothing: the shortest that carries the device's bits
   std::uint32_t first_config_id = 0;             ///< of the first start; 0: drawn at random. Tests set it
 
@@ -36,7 +36,7 @@ struct DeviceSettings {
 [[nodiscard]] hal::Result<void> check_settings(const DeviceSettings& settings);
 
 /// The configuration to ask this device for; config_id is 0. Errors: out_of_range (names the setting and what the
-/// device can do), unsupported (HID and a device that does not fit it).
+/// device can do), unsupported (a device that the bus cannot carry).
 [[nodiscard]] hal::Result<protocol::Configuration> configuration_for(const DeviceSettings& settings,
                                                                      const protocol::DeviceDescriptor& device);
 

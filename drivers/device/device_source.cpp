@@ -6,9 +6,7 @@
 #include <random>
 #include <utility>
 
-#include "drivers/protocol/frame_header.hpp"
-#include "drivers/protocol/hid_report.hpp"
-#include "drivers/protocol/packet_encoder.hpp"
+#include "drivers/protocol/bus.hpp"
 
 namespace compueye::device {
 namespace {
@@ -16,18 +14,9 @@ namespace {
 constexpr std::size_t least_chunk_bytes = 65536;
 constexpr BackOffSettings time_pauses{50'000'000, 10'000'000'000};
 
-/// What a frame takes on the wire.
-std::size_t frame_bytes(DeviceBus bus, const protocol::DeviceDescriptor& device, protocol::SampleFormat format) {
-  if (bus == DeviceBus::hid)
-    return static_cast<std::size_t>(protocol::hid_parts(device.channels)) * protocol::hid_report_bytes;
-  const int in_packet = std::max(protocol::channels_in(format, device.most_payload), 1);
-  const auto packets = static_cast<std::size_t>((device.channels - 1) / in_packet) + 1;
-  return protocol::packed_bytes(format, static_cast<std::size_t>(device.channels)) +
-         packets * protocol::least_packet_bytes;
-}
-
-std::size_t chunk_bytes(DeviceBus bus, std::size_t max_packet) {
-  if (bus == DeviceBus::hid) return protocol::hid_report_bytes;
+/// What one read of the transport gets.
+std::size_t chunk_bytes(const protocol::Bus& bus, std::size_t max_packet) {
+  if (bus.report_bytes > 0) return bus.report_bytes;
   const std::size_t packet = std::clamp<std::size_t>(max_packet, 1, least_chunk_bytes);
   return (least_chunk_bytes + packet - 1) / packet * packet;
 }
@@ -53,13 +42,12 @@ hal::Result<std::unique_ptr<DeviceSource>> DeviceSource::create(DeviceSettings s
   if (!configuration) return tl::unexpected(std::move(configuration.error()));
   configuration->config_id = wanted.first_config_id != 0 ? wanted.first_config_id - 1 : random_config_id();
   source->configuration_ = *configuration;
-  source->description_ =
-      device.source_description(wanted.bus == DeviceBus::hid ? "hid" : "usb", configuration->frame_rate_mhz * 1e-3);
+  source->description_ = device.source_description(wanted.bus->name, configuration->frame_rate_mhz * 1e-3);
   const std::int64_t usual_ns = std::max<std::int64_t>(5 * configuration->period_ns(), 50'000'000);
   source->silence_ns_ = wanted.silence_ns != 0 ? wanted.silence_ns : usual_ns;
-  source->reader_ = make_stream_reader(wanted.bus, device);
-  source->chunk_.resize(chunk_bytes(wanted.bus, source->transport_->describe().max_packet));
-  const std::size_t frame = frame_bytes(wanted.bus, device, configuration->format);
+  source->reader_ = make_stream_reader(wanted.bus->framing, device);
+  source->chunk_.resize(chunk_bytes(*wanted.bus, source->transport_->describe().max_packet));
+  const std::size_t frame = protocol::frame_size(*wanted.bus, device, configuration->format).bytes;
   source->babble_bytes_ = 4 * frame + 1024;
   source->late_reads_ = static_cast<int>(frame / source->chunk_.size()) + 2;
   return source;

@@ -1,13 +1,120 @@
 #include "drivers/device/stream_reader.hpp"
 
-#include "drivers/device/stream_reader_hid.hpp"
-#include "drivers/device/stream_reader_usb.hpp"
+#include <utility>
+
+#include "drivers/protocol/frame_assembler.hpp"
+#include "drivers/protocol/hid_assembler.hpp"
+#include "drivers/protocol/packet_stream.hpp"
 
 namespace compueye::device {
+namespace {
 
-std::unique_ptr<StreamReader> make_stream_reader(DeviceBus bus, const protocol::DeviceDescriptor& descriptor) {
-  if (bus == DeviceBus::hid) return std::make_unique<StreamReaderHid>(descriptor);
-  return std::make_unique<StreamReaderUsb>(descriptor);
+/// Frames out of a stream of packets.
+class PacketReader final : public StreamReader {
+ public:
+  explicit PacketReader(const protocol::DeviceDescriptor& descriptor)
+      : packets_(descriptor.packet_limits()), frames_(descriptor.channels, descriptor.bits) {}
+
+  void begin_run() noexcept override {
+    packets_.reset();
+    before_run_ = packets_.counters();
+    frames_.begin_run();
+  }
+  void begin_stream(std::uint32_t config_id, std::int64_t period_ns) noexcept override {
+    packets_.reset();
+    frames_.begin_stream(config_id, period_ns);
+  }
+  void push(std::span<const std::byte> chunk) noexcept override { packets_.feed(chunk); }
+  [[nodiscard]] std::optional<hal::SampleBlock> take() noexcept override {
+    for (;;) {
+      if (auto block = frames_.take()) return block;
+      const auto packet = packets_.next();
+      if (!packet) return std::nullopt;
+      frames_.push(*packet);
+    }
+  }
+  void stop(hal::DropReason reason) noexcept override { frames_.stop(reason); }
+  void lose(std::uint64_t frames, hal::DropReason reason) noexcept override { frames_.lose(frames, reason); }
+  [[nodiscard]] const hal::FrameAccount& account() const noexcept override { return frames_.account(); }
+
+  void add_failures(FailureCounters& failures) const noexcept override {
+    const protocol::StreamCounters& stream = packets_.counters();
+    failures[Failure::crc_error] += stream.crc_errors - before_run_.crc_errors;
+    failures[Failure::garbage] += stream.bad_headers - before_run_.bad_headers;
+    failures[Failure::resync] += stream.resyncs - before_run_.resyncs;
+    const protocol::AssemblerCounters& frames = frames_.counters();
+    failures[Failure::missing_packet] += frames_.missing_packets();
+    failures[Failure::repeated_part] += frames.duplicate_parts;
+    failures[Failure::late_part] += frames.late_parts;
+    failures[Failure::other_config] += frames.other_config;
+    failures[Failure::incomplete_frame] += frames.incomplete_frames;
+    failures[Failure::bad_code] += frames.bad_codes;
+  }
+
+ private:
+  protocol::PacketStream packets_;
+  protocol::FrameAssembler frames_;
+  protocol::StreamCounters before_run_;
+};
+
+/// Frames out of input reports, one a chunk. Reports carry no time, so the device is asked for it: at the first report
+/// of a stream, and again after a frame without TIME_OK, an incomplete one, or a gap, in which one may have been.
+class ReportReader final : public StreamReader {
+ public:
+  explicit ReportReader(const protocol::DeviceDescriptor& descriptor)
+      : reports_(descriptor.channels, descriptor.bits) {}
+
+  void begin_run() noexcept override { reports_.begin_run(); }
+  void begin_stream(std::uint32_t config_id, std::int64_t period_ns) noexcept override {
+    reports_.begin_stream(config_id, period_ns);
+    next_frame_ = reports_.account().produced;
+    needs_time_ = true;
+  }
+  void push(std::span<const std::byte> chunk) noexcept override { reports_.push(chunk); }
+  [[nodiscard]] std::optional<hal::SampleBlock> take() noexcept override {
+    const auto block = reports_.take();
+    if (!block) return block;
+    const std::uint64_t incomplete = reports_.counters().incomplete_frames;
+    const bool whole = std::exchange(incomplete_, incomplete) == incomplete;
+    const bool follows = std::exchange(next_frame_, block->frame + 1) == block->frame;
+    needs_time_ = needs_time_ || !block->flags.time_ok || !whole || !follows;
+    return block;
+  }
+  void stop(hal::DropReason reason) noexcept override { reports_.stop(reason); }
+  void lose(std::uint64_t frames, hal::DropReason reason) noexcept override { reports_.lose(frames, reason); }
+  [[nodiscard]] bool needs_time() const noexcept override { return needs_time_; }
+  void set_time(const protocol::Status& status) noexcept override {
+    if (status.frames == 0) return;
+    reports_.set_time(status);
+    needs_time_ = false;
+  }
+  [[nodiscard]] const hal::FrameAccount& account() const noexcept override { return reports_.account(); }
+
+  void add_failures(FailureCounters& failures) const noexcept override {
+    const protocol::HidCounters& reports = reports_.counters();
+    failures[Failure::crc_error] += reports.crc_errors;
+    failures[Failure::garbage] += reports.wrong_id + reports.wrong_part;
+    failures[Failure::cut_report] += reports.wrong_length;
+    failures[Failure::repeated_part] += reports.duplicate_parts;
+    failures[Failure::late_part] += reports.late_parts;
+    failures[Failure::other_config] += reports.other_config;
+    failures[Failure::incomplete_frame] += reports.incomplete_frames;
+    failures[Failure::bad_code] += reports.bad_codes;
+  }
+
+ private:
+  protocol::HidAssembler reports_;
+  bool needs_time_ = true;
+  std::uint64_t next_frame_ = 0;
+  std::uint64_t incomplete_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<StreamReader> make_stream_reader(protocol::Framing framing,
+                                                 const protocol::DeviceDescriptor& descriptor) {
+  if (framing == protocol::Framing::reports) return std::make_unique<ReportReader>(descriptor);
+  return std::make_unique<PacketReader>(descriptor);
 }
 
 }  // namespace compueye::device

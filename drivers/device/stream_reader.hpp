@@ -7,6 +7,7 @@
 #include <span>
 
 #include "drivers/device/failure_counters.hpp"
+#include "drivers/protocol/bus.hpp"
 #include "drivers/protocol/descriptor.hpp"
 #include "drivers/protocol/frame_builder.hpp"
 #include "drivers/protocol/status.hpp"
@@ -15,9 +16,7 @@
 
 namespace compueye::device {
 
-enum class DeviceBus : std::uint8_t { usb, hid };
-
-/// Bytes of the stream in, whole frames out: what USB packets and HID reports have in common. Nothing allocates after
+/// Bytes of the stream in, whole frames out: what packets and reports have in common. Nothing allocates after
 /// construction.
 ///
 ///   reader.push(chunk);                          // which must live until take() has returned nothing
@@ -50,7 +49,7 @@ class StreamReader {
   virtual void add_failures(FailureCounters& failures) const noexcept = 0;
 };
 
-[[nodiscard]] std::unique_ptr<StreamReader> make_stream_reader(DeviceBus bus,
+[[nodiscard]] std::unique_ptr<StreamReader> make_stream_reader(protocol::Framing framing,
                                                                const protocol::DeviceDescriptor& descriptor);
 
 }  // namespace compueye::device

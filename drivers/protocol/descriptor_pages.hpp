@@ -22,10 +22,6 @@ struct PageRequest {
 void store(const PageRequest& request, std::span<std::byte, PageRequest::bytes> bytes) noexcept;
 [[nodiscard]] PageRequest load_page_request(std::span<const std::byte, PageRequest::bytes> bytes) noexcept;
 
-/// Pages that suit a transport: USB 4096 (what Linux lets a control transfer carry), HID 60.
-inline constexpr std::size_t usb_page_bytes = 4096;
-inline constexpr std::size_t hid_page_bytes = 60;
-
 /// Fetches a descriptor page by page:
 ///
 ///   while (!pages.complete()) { ...control(get_desc, pages.request(), reply of pages.reply_bytes());
@@ -34,7 +30,7 @@ inline constexpr std::size_t hid_page_bytes = 60;
 /// Memory is the length that the first page announces, at most DeviceDescriptor::most_bytes.
 class DescriptorPages {
  public:
-  /// `page_bytes` 12 .. 4096. `place`: the bus address, for errors.
+  /// `page_bytes` 12 .. 4096, as Bus has them. `place`: the bus address, for errors.
   DescriptorPages(std::size_t page_bytes, std::string_view place);
 
   [[nodiscard]] std::array<std::byte, PageRequest::bytes> request() const noexcept;

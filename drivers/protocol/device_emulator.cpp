@@ -19,10 +19,8 @@ std::int64_t until(std::int64_t now_ns, std::int64_t duration_ns) noexcept {
 
 /// Bytes of the FIFO that the widest frame takes.
 std::size_t most_frame_bytes(const EmulatorSettings& settings) {
-  const DeviceDescriptor& d = settings.descriptor;
-  if (settings.bus == EmulatedBus::hid) return static_cast<std::size_t>(hid_parts(d.channels)) * hid_report_bytes;
-  const std::size_t payload = packed_bytes(SampleFormat::i24, static_cast<std::size_t>(d.channels));
-  return payload + (payload / (d.most_payload - 2U) + 1) * least_packet_bytes + room_for_events;
+  return frame_size(*settings.bus, settings.descriptor, SampleFormat::i24).bytes +
+         (settings.events ? room_for_events : 0);
 }
 
 hal::Result<void> check_settings(const EmulatorSettings& settings) {
@@ -30,10 +28,11 @@ hal::Result<void> check_settings(const EmulatorSettings& settings) {
   const auto refuse = [&](std::string sentence) {
     return hal::fail(hal::ErrorCode::out_of_range, d.serial, std::move(sentence));
   };
-  if (settings.bus == EmulatedBus::hid &&
-      (d.channels > hid_most_channels || d.bits > hid_bits || !d.offers(SampleFormat::u12))) {
-    return refuse("HID carries at most " + std::to_string(hid_most_channels) + " channels of " +
-                  std::to_string(hid_bits) + " bits as u12");
+  const Bus& bus = *settings.bus;
+  if (!bus.carries(d) || (bus.only_format && !d.offers(*bus.only_format))) {
+    return refuse(std::string(bus.title) + " carries at most " + std::to_string(bus.most_channels) + " channels of " +
+                  std::to_string(bus.most_bits) + " bits" +
+                  (bus.only_format ? " as " + std::string(name(*bus.only_format)) : ""));
   }
   if (settings.fifo_bytes < most_frame_bytes(settings)) {
     return refuse("a FIFO of " + std::to_string(settings.fifo_bytes) +
@@ -59,8 +58,9 @@ hal::Result<DeviceEmulator> DeviceEmulator::create(EmulatorSettings settings, Sa
   }
   auto bytes = serialise(settings.descriptor);
   if (!bytes) return tl::unexpected(std::move(bytes.error()));
+  settings.events = settings.events && settings.bus->framing == Framing::packets;
   if (auto right = check_settings(settings); !right) return tl::unexpected(std::move(right.error()));
-  if (settings.link_bytes_per_s <= 0.0) settings.link_bytes_per_s = settings.bus == EmulatedBus::hid ? 64e3 : 35e6;
+  if (settings.link_bytes_per_s <= 0.0) settings.link_bytes_per_s = settings.bus->emulated_bytes_per_s;
   return DeviceEmulator(std::move(settings), std::move(generator), std::move(*bytes), now_ns);
 }
 
@@ -246,14 +246,14 @@ DeviceEmulator::Transfer DeviceEmulator::read(std::int64_t now_ns, std::span<std
   if (now_ns < now_wrong_.silent_until_ns) return {Outcome::nothing, 0};
   const std::size_t bytes = now_ns < now_wrong_.babble_until_ns
                                 ? babble(now_ns, into)
-                                : fifo_.read(now_ns, into, settings_.bus == EmulatedBus::hid);
+                                : fifo_.read(now_ns, into, settings_.bus->report_bytes > 0);
   return {bytes > 0 ? Outcome::done : Outcome::nothing, bytes};
 }
 
 std::size_t DeviceEmulator::babble(std::int64_t now_ns, std::span<std::byte> into) noexcept {
   const double allowed = static_cast<double>(now_ns - babbled_ns_) * 1e-9 * settings_.link_bytes_per_s;
   std::size_t bytes = std::min(into.size(), static_cast<std::size_t>(std::min(allowed, 1e6)));
-  if (settings_.bus == EmulatedBus::hid) bytes = bytes < hid_report_bytes ? 0 : hid_report_bytes;
+  if (const std::size_t report = settings_.bus->report_bytes; report > 0) bytes = bytes < report ? 0 : report;
   if (bytes == 0) return 0;
   babbled_ns_ = now_ns;
   for (std::size_t at = 0; at < bytes; at += sizeof(std::uint64_t)) {

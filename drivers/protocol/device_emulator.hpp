@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/protocol/bus.hpp"
 #include "drivers/protocol/configuration.hpp"
 #include "drivers/protocol/descriptor.hpp"
 #include "drivers/protocol/descriptor_pages.hpp"
@@ -24,8 +25,6 @@
 
 namespace compueye::protocol {
 
-enum class EmulatedBus : std::uint8_t { usb, hid };
-
 /// What a sample generator is told about the frame whose samples it makes.
 struct EmulatedExposure {
   std::uint64_t frame = 0;    ///< since START, from 0
@@ -39,12 +38,12 @@ using SampleGenerator = std::function<void(const EmulatedExposure&, std::span<st
 
 struct EmulatorSettings {
   DeviceDescriptor descriptor;
-  EmulatedBus bus = EmulatedBus::usb;
+  const Bus* bus = &usb_bus;                         ///< never null
   std::size_t fifo_bytes = std::size_t{256} * 1024;  ///< at least one frame of the widest format offered
-  double link_bytes_per_s = 0.0;                     ///< 0: 35e6 on USB, 64000 on HID (a report a millisecond)
-  bool events = true;                                ///< USB: log and event packets between the data
-  std::int64_t boot_ns = 50'000'000;                 ///< from power-on or reboot to the first answer
-  std::uint64_t seed = 1;                            ///< of damaged bits and garbage
+  double link_bytes_per_s = 0.0;                     ///< 0: those of the bus
+  bool events = true;                 ///< log and event packets between the data, where there are packets
+  std::int64_t boot_ns = 50'000'000;  ///< from power-on or reboot to the first answer
+  std::uint64_t seed = 1;             ///< of damaged bits and garbage
   std::vector<EmulatorFault> faults;
 };
 
@@ -66,7 +65,7 @@ struct EmulatorTruth {
 class DeviceEmulator {
  public:
   /// Errors: those of check_descriptor(); usage (no generator); out_of_range (FIFO smaller than a frame, an eye too
-  /// large or deep for HID).
+  /// large or deep for the bus).
   [[nodiscard]] static hal::Result<DeviceEmulator> create(EmulatorSettings settings, SampleGenerator generator,
                                                           std::int64_t now_ns = 0);
 
@@ -101,7 +100,7 @@ class DeviceEmulator {
   [[nodiscard]] std::uint64_t attachment(std::int64_t now_ns);
   [[nodiscard]] const std::string& serial() const noexcept { return descriptor_.serial; }
   [[nodiscard]] const DeviceDescriptor& descriptor() const noexcept { return descriptor_; }
-  [[nodiscard]] EmulatedBus bus() const noexcept { return settings_.bus; }
+  [[nodiscard]] const Bus& bus() const noexcept { return *settings_.bus; }
   [[nodiscard]] DeviceState state() const noexcept { return state_; }
   [[nodiscard]] const EmulatorTruth& truth() const noexcept { return truth_; }
 
@@ -158,8 +157,9 @@ class DeviceEmulator {
 
   // Frames: emulator_frames.cpp
   void expose(std::int64_t ready_ns);
-  void send_usb(std::int64_t ready_ns, FrameHeader header);
-  void send_hid(std::int64_t ready_ns, std::uint8_t flags);
+  void send_packets(std::int64_t ready_ns, std::uint64_t frame, std::int64_t start_ns);
+  void send_reports(std::int64_t ready_ns, std::int64_t start_ns);
+  void send_events(std::int64_t ready_ns, const FrameHeader& header);
   void send_event(std::int64_t ready_ns, FrameHeader header, PacketType type, std::span<const std::byte> payload);
   void give_to_link(std::int64_t ready_ns, std::span<std::byte> packet) noexcept;
   [[nodiscard]] bool frame_fits() const noexcept;

@@ -9,9 +9,9 @@
 namespace compueye::protocol {
 
 EmulatedTransport::EmulatedTransport(DeviceEmulator& device, hal::Clock& clock) : device_(device), clock_(clock) {
-  description_.bus = device.bus() == EmulatedBus::hid ? "emulator hid" : "emulator usb";
+  description_.bus = "emulator " + std::string(device.bus().name);
   description_.serial = device.serial();
-  description_.max_packet = device.bus() == EmulatedBus::hid ? hid_report_bytes : 512;
+  description_.max_packet = device.bus().emulated_max_packet_bytes;
 }
 
 hal::Result<void> EmulatedTransport::open() {
@@ -61,7 +61,7 @@ hal::Result<std::size_t> EmulatedTransport::control(std::uint8_t request, std::s
   clock_.sleep_until_ns(std::min(answered_ns, deadline_ns));
   if (answered_ns > deadline_ns) return hal::timed_out();
   if (auto there = check_there(); !there) return tl::unexpected(std::move(there.error()));
-  if (device_.bus() == EmulatedBus::hid) return feature_reports(request, payload, reply, deadline_ns);
+  if (device_.bus().framing == Framing::reports) return feature_reports(request, payload, reply, deadline_ns);
   return outcome(device_.control(clock_.now_ns(), request, payload, reply), "a request", deadline_ns);
 }
 

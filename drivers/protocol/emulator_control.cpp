@@ -88,8 +88,8 @@ DeviceEmulator::Transfer DeviceEmulator::descriptor_page(std::span<const std::by
 DeviceEmulator::Transfer DeviceEmulator::set_configuration(std::span<const std::byte> payload) {
   if (state_ == DeviceState::streaming) return refuse(StatusError::wrong_state);
   const Configuration wanted = load_configuration(payload.first<Configuration::bytes>());
-  const bool carried = settings_.bus == EmulatedBus::usb || wanted.format == SampleFormat::u12;
-  if (!carried || !check_configuration(wanted, descriptor_)) return refuse(StatusError::out_of_limits);
+  if (!settings_.bus->carries(wanted.format) || !check_configuration(wanted, descriptor_))
+    return refuse(StatusError::out_of_limits);
   configuration_ = wanted;
   state_ = DeviceState::configured;
   return {Outcome::done, 0};

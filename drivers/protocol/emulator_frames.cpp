@@ -35,47 +35,28 @@ void DeviceEmulator::expose(std::int64_t ready_ns) {
   const std::int64_t start_ns = exposure_start_ns(frame);
   generator_(EmulatedExposure{frame, start_ns, configuration_.exposure_ns, levels_}, codes_);
 
-  if (settings_.bus == EmulatedBus::hid) {
-    unsigned flags = (stream_config_id_ & 0xFU) << hid_flag::config_tag_shift;
-    if (overrun_pending_) flags |= hid_flag::overrun;
-    if (dark(start_ns)) flags |= hid_flag::dark;
-    if (!clock_was_set_) flags |= hid_flag::time_ok;
-    send_hid(ready_ns, static_cast<std::uint8_t>(flags));
+  if (settings_.bus->framing == Framing::reports) {
+    send_reports(ready_ns, start_ns);
   } else {
-    FrameHeader header;
-    header.version = descriptor_.version;
-    header.frame = static_cast<std::uint32_t>(frame);
-    header.t_ns = clock_ns(start_ns);
-    header.config_id = stream_config_id_;
-    header.illum = illum(start_ns);
-    header.temperature = 2500;
-    header.dropped = static_cast<std::uint16_t>(dropped_);
-    if (overrun_pending_) header.flags |= packet_flag::overrun;
-    if (dark(start_ns)) header.flags |= packet_flag::dark;
-    if (!clock_was_set_) header.flags |= packet_flag::time_ok;
-    send_usb(ready_ns, header);
+    send_packets(ready_ns, frame, start_ns);
   }
   overrun_pending_ = false;
   clock_was_set_ = false;
 }
 
-void DeviceEmulator::send_usb(std::int64_t ready_ns, FrameHeader header) {
-  if (settings_.events) {
-    if (header.frame == 0) send_event(ready_ns, header, PacketType::log, std::as_bytes(std::span(greeting)));
-    std::byte event[EventPayload::bytes];
-    if (overrun_pending_) {
-      store(EventPayload{EventPayload::overrun_began, dropped_}, event);
-      send_event(ready_ns, header, PacketType::event, event);
-    }
-    if (settling_ && header.illum != illumination_changing) {
-      store(EventPayload{EventPayload::illumination_settled, header.illum}, event);
-      send_event(ready_ns, header, PacketType::event, event);
-    }
-    if (clock_was_set_) {
-      store(EventPayload{EventPayload::clock_set, 0}, event);
-      send_event(ready_ns, header, PacketType::event, event);
-    }
-  }
+void DeviceEmulator::send_packets(std::int64_t ready_ns, std::uint64_t frame, std::int64_t start_ns) {
+  FrameHeader header;
+  header.version = descriptor_.version;
+  header.frame = static_cast<std::uint32_t>(frame);
+  header.t_ns = clock_ns(start_ns);
+  header.config_id = stream_config_id_;
+  header.illum = illum(start_ns);
+  header.temperature = 2500;
+  header.dropped = static_cast<std::uint16_t>(dropped_);
+  if (overrun_pending_) header.flags |= packet_flag::overrun;
+  if (dark(start_ns)) header.flags |= packet_flag::dark;
+  if (!clock_was_set_) header.flags |= packet_flag::time_ok;
+  if (settings_.events) send_events(ready_ns, header);
   if (header.illum != illumination_changing) settling_ = false;
   header.format = configuration_.format;
   const auto full_scale = static_cast<std::int32_t>((1U << static_cast<unsigned>(descriptor_.bits)) - 1U);
@@ -94,6 +75,23 @@ void DeviceEmulator::send_usb(std::int64_t ready_ns, FrameHeader header) {
   }
 }
 
+void DeviceEmulator::send_events(std::int64_t ready_ns, const FrameHeader& header) {
+  if (header.frame == 0) send_event(ready_ns, header, PacketType::log, std::as_bytes(std::span(greeting)));
+  std::byte event[EventPayload::bytes];
+  if (overrun_pending_) {
+    store(EventPayload{EventPayload::overrun_began, dropped_}, event);
+    send_event(ready_ns, header, PacketType::event, event);
+  }
+  if (settling_ && header.illum != illumination_changing) {
+    store(EventPayload{EventPayload::illumination_settled, header.illum}, event);
+    send_event(ready_ns, header, PacketType::event, event);
+  }
+  if (clock_was_set_) {
+    store(EventPayload{EventPayload::clock_set, 0}, event);
+    send_event(ready_ns, header, PacketType::event, event);
+  }
+}
+
 void DeviceEmulator::send_event(std::int64_t ready_ns, FrameHeader header, PacketType type,
                                 std::span<const std::byte> payload) {
   header.type = type;
@@ -103,7 +101,12 @@ void DeviceEmulator::send_event(std::int64_t ready_ns, FrameHeader header, Packe
   give_to_link(ready_ns, std::span(packet_).first(bytes));
 }
 
-void DeviceEmulator::send_hid(std::int64_t ready_ns, std::uint8_t flags) {
+void DeviceEmulator::send_reports(std::int64_t ready_ns, std::int64_t start_ns) {
+  unsigned all_flags = (stream_config_id_ & 0xFU) << hid_flag::config_tag_shift;
+  if (overrun_pending_) all_flags |= hid_flag::overrun;
+  if (dark(start_ns)) all_flags |= hid_flag::dark;
+  if (!clock_was_set_) all_flags |= hid_flag::time_ok;
+  const auto flags = static_cast<std::uint8_t>(all_flags);
   HidReport report;
   report.frame = static_cast<std::uint16_t>(frame_ - 1);
   report.parts = static_cast<std::uint8_t>(hid_parts(descriptor_.channels));
@@ -148,17 +151,11 @@ void DeviceEmulator::give_to_link(std::int64_t ready_ns, std::span<std::byte> pa
 }
 
 bool DeviceEmulator::frame_fits() const noexcept {
-  if (settings_.bus == EmulatedBus::hid) {
-    const auto parts = static_cast<std::size_t>(hid_parts(descriptor_.channels));
-    return fifo_.fits(parts * hid_report_bytes, parts);
-  }
-  const auto step = static_cast<std::size_t>(channels_in(configuration_.format, descriptor_.most_payload));
-  const std::size_t packets = (codes_.size() + step - 1) / step;
+  const FrameSize frame = frame_size(*settings_.bus, descriptor_, configuration_.format);
   // Up to four log and event packets go with it.
   constexpr std::size_t most_others = 4, other_bytes = least_packet_bytes + 16;
-  return fifo_.fits(packed_bytes(configuration_.format, codes_.size()) + packets * (least_packet_bytes + 2) +
-                        most_others * other_bytes,
-                    packets + most_others);
+  const std::size_t others = settings_.events ? most_others : 0;
+  return fifo_.fits(frame.bytes + others * other_bytes, frame.packets + others);
 }
 
 bool DeviceEmulator::dark(std::int64_t start_ns) const noexcept {

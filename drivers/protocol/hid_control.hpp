@@ -22,6 +22,9 @@ namespace compueye::protocol {
 /// SET_ILLUM a SET of 4; PING a SET and a GET of 5; STATUS a GET of 5. A device refuses by stalling the report.
 enum class HidFeature : std::uint8_t { descriptor = 2, configuration = 3, illumination = 4, counters = 5 };
 
+/// Of a descriptor's page, beside its number and count.
+inline constexpr std::size_t hid_page_bytes = 60;
+
 using HidReportBytes = std::array<std::byte, hid_report_bytes>;
 
 /// The feature reports that carry one request: first the SET, if any, then the GET, if any.

@@ -2,6 +2,7 @@
 
 #include <hidapi/hidapi.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -12,6 +13,7 @@
 #include "drivers/protocol/hid_control.hpp"
 #include "drivers/protocol/hid_report.hpp"
 #include "hal/clock.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::transport {
 namespace {
@@ -33,6 +35,29 @@ std::optional<FileIdentity> identity_of(const std::string& path) {
   return FileIdentity{status.st_dev, status.st_ino};
 }
 
+/// The protocol's texts are printable ASCII; anything else becomes '?'.
+std::string ascii_of(const wchar_t* text) {
+  std::string ascii;
+  for (; text != nullptr && *text != L'\0'; ++text)
+    ascii += *text >= L' ' && *text <= L'~' ? static_cast<char>(*text) : '?';
+  return ascii;
+}
+
+hal::Error refusal_of(const std::string& path) {
+  if (access(path.c_str(), R_OK | W_OK) == 0) return {};
+  return {hal::ErrorCode::io, path,
+          "permission denied; install boards/generic-hid/70-compueye.rules and plug the eye in again"};
+}
+
+hal::Result<FoundEye> find_eye(protocol::UsbIdentity identity, const std::string& serial) {
+  std::vector<FoundEye> eyes = TRY(list_hid_eyes(identity));
+  const auto found = std::find_if(eyes.begin(), eyes.end(),
+                                  [&](const FoundEye& eye) { return serial.empty() || eye.serial == serial; });
+  if (found == eyes.end()) return tl::unexpected(no_eye(protocol::hid_bus, serial, eyes));
+  if (!found->reachable()) return tl::unexpected(std::move(found->refusal));
+  return std::move(*found);
+}
+
 constexpr std::int64_t ns_per_ms = 1'000'000;
 
 /// Rounded up, so that a deadline is never missed by early waking.
@@ -43,6 +68,30 @@ int milliseconds_until(std::int64_t deadline_ns) {
 }
 
 }  // namespace
+
+hal::Result<std::vector<FoundEye>> list_hid_eyes(protocol::UsbIdentity identity) {
+  if (hid_init() != 0) return hal::fail(hal::ErrorCode::io, "hid", "hidapi does not start on this machine");
+  const std::unique_ptr<hid_device_info, void (*)(hid_device_info*)> list(
+      hid_enumerate(identity.vendor, identity.product), hid_free_enumeration);
+  std::vector<FoundEye> eyes;
+  for (const hid_device_info* each = list.get(); each != nullptr; each = each->next) {
+    if (each->path == nullptr) continue;
+    const std::string path = each->path;
+    // hidapi lists a device once for every usage it has.
+    if (std::any_of(eyes.begin(), eyes.end(), [&](const FoundEye& eye) { return eye.path == path; })) continue;
+    eyes.push_back({path.substr(path.rfind('/') + 1), path, ascii_of(each->serial_number),
+                    ascii_of(each->product_string), refusal_of(path)});
+  }
+  std::sort(eyes.begin(), eyes.end(), [](const FoundEye& a, const FoundEye& b) { return a.bus < b.bus; });
+  return eyes;
+}
+
+const Cable hid_cable{protocol::hid_bus, [] { return list_hid_eyes(); },
+                      [](const std::string& serial) -> std::unique_ptr<hal::ByteTransport> {
+                        HidSettings settings;
+                        settings.serial = serial;
+                        return std::make_unique<HidTransport>(std::move(settings));
+                      }};
 
 struct HidTransport::Connection {
   std::string path;
@@ -64,20 +113,19 @@ void HidTransport::close() noexcept {
 
 hal::Result<void> HidTransport::open() {
   close();
-  auto eye = find_hid_eye(settings_.identity, settings_.serial);
-  if (!eye) return tl::unexpected(std::move(eye.error()));
+  const FoundEye eye = TRY(find_eye(settings_.identity, settings_.serial));
   auto connection = std::make_unique<Connection>();
-  connection->path = eye->path;
-  connection->input.reset(hid_open_path(eye->path.c_str()));
-  connection->requests.reset(hid_open_path(eye->path.c_str()));
-  connection->file = identity_of(eye->path);
+  connection->path = eye.path;
+  connection->input.reset(hid_open_path(eye.path.c_str()));
+  connection->requests.reset(hid_open_path(eye.path.c_str()));
+  connection->file = identity_of(eye.path);
   if (!connection->input || !connection->requests || !connection->file) {
     return hal::fail(
-        hal::ErrorCode::io, eye->path,
+        hal::ErrorCode::io, eye.path,
         "the device file does not open; plug the eye in again, and install boards/generic-hid/70-compueye.rules");
   }
-  description_.bus = eye->bus;
-  description_.serial = eye->serial;
+  description_.bus = eye.bus;
+  description_.serial = eye.serial;
   connection_ = std::move(connection);
   return {};
 }
@@ -131,19 +179,18 @@ hal::Result<void> HidTransport::write(std::span<const std::byte> from, std::int6
 hal::Result<std::size_t> HidTransport::control(std::uint8_t request, std::span<const std::byte> payload,
                                                std::span<std::byte> reply, std::int64_t deadline_ns) {
   if (!connection_) return tl::unexpected(not_open());
-  auto exchange = protocol::hid_exchange(request, payload, reply.size());
-  if (!exchange) return tl::unexpected(std::move(exchange.error()));
+  const protocol::HidExchange exchange = TRY(protocol::hid_exchange(request, payload, reply.size()));
   if (milliseconds_until(deadline_ns) == 0) return hal::timed_out();
   hid_device* const device = connection_->requests.get();
-  if (exchange->has_set) {
+  if (exchange.has_set) {
     errno = 0;
-    const int bytes = hid_send_feature_report(device, reinterpret_cast<const unsigned char*>(exchange->set.data()),
-                                              exchange->set.size());
+    const int bytes = hid_send_feature_report(device, reinterpret_cast<const unsigned char*>(exchange.set.data()),
+                                              exchange.set.size());
     if (bytes < 0) return tl::unexpected(failure(errno, "sending a feature report"));
   }
-  if (!exchange->has_get) return std::size_t{0};
+  if (!exchange.has_get) return std::size_t{0};
   protocol::HidReportBytes report{};
-  report[0] = static_cast<std::byte>(exchange->get);
+  report[0] = static_cast<std::byte>(exchange.get);
   errno = 0;
   const int bytes = hid_get_feature_report(device, reinterpret_cast<unsigned char*>(report.data()), report.size());
   if (bytes < 0) return tl::unexpected(failure(errno, "asking for a feature report"));

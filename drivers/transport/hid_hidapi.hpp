@@ -5,15 +5,20 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
-#include "drivers/protocol/usb_identity.hpp"
-#include "drivers/transport/hid_eye_list.hpp"
+#include "drivers/protocol/bus.hpp"
+#include "drivers/transport/cable.hpp"
 #include "hal/byte_transport.hpp"
 
 namespace compueye::transport {
 
+/// As Cable::list(), asked of udev.
+[[nodiscard]] hal::Result<std::vector<FoundEye>> list_hid_eyes(
+    protocol::UsbIdentity identity = protocol::hid_bus.identity);
+
 struct HidSettings {
-  protocol::UsbIdentity identity = protocol::hid_eye_identity;
+  protocol::UsbIdentity identity = protocol::hid_bus.identity;
   std::string serial;  ///< empty: the first eye that is found
 };
 
@@ -56,5 +61,7 @@ class HidTransport final : public hal::ByteTransport {
   hal::TransportDescription description_;
   std::unique_ptr<Connection> connection_;
 };
+
+extern const Cable hid_cable;
 
 }  // namespace compueye::transport

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "drivers/transport/usb_error.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::transport {
 namespace {
@@ -27,9 +28,10 @@ std::string bus_of(libusb_device* device) {
   return bus;
 }
 
-std::string address_of(libusb_device* device) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "%03u/%03u", static_cast<unsigned>(libusb_get_bus_number(device)),
+std::string path_of(libusb_device* device) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "/dev/bus/usb/%03u/%03u",
+                static_cast<unsigned>(libusb_get_bus_number(device)),
                 static_cast<unsigned>(libusb_get_device_address(device)));
   return text.data();
 }
@@ -55,14 +57,14 @@ std::string asked_text(libusb_device_handle* handle, std::uint8_t index) {
 }
 
 /// Opens `device` and fills in who it is. An eye that cannot be opened has the reason.
-Handle look_at(libusb_device* device, const libusb_device_descriptor& descriptor, UsbEye& eye) {
+Handle look_at(libusb_device* device, const libusb_device_descriptor& descriptor, FoundEye& eye) {
   eye.bus = bus_of(device);
-  eye.address = address_of(device);
+  eye.path = path_of(device);
   eye.serial = noted_text(eye.bus, "serial");
   eye.product = noted_text(eye.bus, "product");
   libusb_device_handle* handle = nullptr;
   if (const int code = libusb_open(device, &handle); code != LIBUSB_SUCCESS) {
-    eye.refusal = usb_error(code, eye.bus, "opening the eye (/dev/bus/usb/" + eye.address + ")");
+    eye.refusal = usb_error(code, eye.bus, "opening the eye (" + eye.path + ")");
     return nullptr;
   }
   Handle opened(handle);
@@ -83,7 +85,7 @@ hal::Result<void> for_each_eye(libusb_context* context, protocol::UsbIdentity id
     libusb_device_descriptor descriptor{};
     if (libusb_get_device_descriptor(devices[k], &descriptor) != LIBUSB_SUCCESS) continue;
     if (descriptor.idVendor != identity.vendor || descriptor.idProduct != identity.product) continue;
-    UsbEye eye;
+    FoundEye eye;
     Handle handle = look_at(devices[k], descriptor, eye);
     if (use(std::move(handle), std::move(eye))) break;
   }
@@ -92,19 +94,18 @@ hal::Result<void> for_each_eye(libusb_context* context, protocol::UsbIdentity id
 
 }  // namespace
 
-hal::Result<std::vector<UsbEye>> list_usb_eyes(protocol::UsbIdentity identity) {
+hal::Result<std::vector<FoundEye>> list_usb_eyes(protocol::UsbIdentity identity) {
   libusb_context* made = nullptr;
   if (const int code = libusb_init(&made); code != LIBUSB_SUCCESS) {
     return tl::unexpected(usb_error(code, "usb", "starting libusb"));
   }
   const std::unique_ptr<libusb_context, void (*)(libusb_context*)> context(made, libusb_exit);
-  std::vector<UsbEye> eyes;
-  auto looked = for_each_eye(made, identity, [&](Handle, UsbEye eye) {
+  std::vector<FoundEye> eyes;
+  TRY(for_each_eye(made, identity, [&](Handle, FoundEye eye) {
     eyes.push_back(std::move(eye));
     return false;
-  });
-  if (!looked) return tl::unexpected(std::move(looked.error()));
-  std::sort(eyes.begin(), eyes.end(), [](const UsbEye& a, const UsbEye& b) { return a.bus < b.bus; });
+  }));
+  std::sort(eyes.begin(), eyes.end(), [](const FoundEye& a, const FoundEye& b) { return a.bus < b.bus; });
   return eyes;
 }
 
@@ -112,25 +113,22 @@ hal::Result<OpenedUsbEye> open_usb_eye(libusb_context* context, protocol::UsbIde
                                        const std::string& serial) {
   OpenedUsbEye found;
   hal::Error refusal;
-  std::string others;
-  auto looked = for_each_eye(context, identity, [&](Handle handle, UsbEye eye) {
+  std::vector<FoundEye> others;
+  TRY(for_each_eye(context, identity, [&](Handle handle, FoundEye eye) {
     // One that may not be opened and whose serial nobody knows could be the one asked for.
     const bool could_be = serial.empty() || eye.serial == serial || (eye.serial.empty() && !eye.reachable());
     if (!could_be) {
-      others += (others.empty() ? "" : ", ") + eye.serial + " (" + eye.bus + ")";
+      others.push_back(std::move(eye));
     } else if (!eye.reachable()) {
       if (refusal.place.empty()) refusal = eye.refusal;
     } else {
       found = {handle.release(), std::move(eye)};
     }
     return found.handle != nullptr;
-  });
-  if (!looked) return tl::unexpected(std::move(looked.error()));
+  }));
   if (found.handle != nullptr) return found;
   if (!refusal.place.empty()) return tl::unexpected(std::move(refusal));
-  const std::string wanted = serial.empty() ? "no eye" : "no eye with serial '" + serial + "'";
-  return hal::fail(hal::ErrorCode::not_found, serial.empty() ? "usb" : serial,
-                   wanted + " is on USB" + (others.empty() ? "" : "; there are " + others) + "; plug it in");
+  return tl::unexpected(no_eye(protocol::usb_bus, serial, others));
 }
 
 }  // namespace compueye::transport

@@ -10,6 +10,7 @@
 #include "drivers/transport/usb_control.hpp"
 #include "drivers/transport/usb_error.hpp"
 #include "hal/clock.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::transport {
 namespace {
@@ -94,6 +95,13 @@ struct UsbTransport::Connection {
   std::unique_ptr<UsbTransferRing> ring;
 };
 
+const Cable usb_cable{protocol::usb_bus, [] { return list_usb_eyes(); },
+                      [](const std::string& serial) -> std::unique_ptr<hal::ByteTransport> {
+                        UsbSettings settings;
+                        settings.serial = serial;
+                        return std::make_unique<UsbTransport>(std::move(settings));
+                      }};
+
 UsbTransport::UsbTransport(UsbSettings settings) : settings_(std::move(settings)) {
   description_.bus = "usb";
   description_.serial = settings_.serial;
@@ -109,9 +117,9 @@ void UsbTransport::close() noexcept {
 
 hal::Result<void> UsbTransport::open() {
   close();
-  if (auto checked = check(settings_, settings_.transfer_bytes); !checked) return checked;
+  TRY(check(settings_, settings_.transfer_bytes));
   auto connection = std::make_unique<Connection>();
-  if (auto connected = connect(*connection); !connected) return connected;
+  TRY(connect(*connection));
   connection_ = std::move(connection);
   return {};
 }
@@ -121,10 +129,9 @@ hal::Result<void> UsbTransport::connect(Connection& connection) {
     connection.context = nullptr;
     return tl::unexpected(usb_error(code, "usb", "starting libusb"));
   }
-  auto opened = open_usb_eye(connection.context, settings_.identity, settings_.serial);
-  if (!opened) return tl::unexpected(std::move(opened.error()));
-  connection.handle = opened->handle;
-  const std::string place = opened->eye.bus + " (" + opened->eye.serial + ")";
+  const OpenedUsbEye opened = TRY(open_usb_eye(connection.context, settings_.identity, settings_.serial));
+  connection.handle = opened.handle;
+  const std::string place = opened.eye.bus + " (" + opened.eye.serial + ")";
 
   const auto endpoint = find_stream_endpoint(libusb_get_device(connection.handle));
   if (!endpoint) {
@@ -142,15 +149,11 @@ hal::Result<void> UsbTransport::connect(Connection& connection) {
 
   const std::size_t packets = (settings_.transfer_bytes + endpoint->max_packet - 1) / endpoint->max_packet;
   const std::size_t transfer_bytes = packets * endpoint->max_packet;
-  if (auto checked = check(settings_, transfer_bytes); !checked) return checked;
-  auto control = UsbControl::create(connection.handle);
-  if (!control) return tl::unexpected(std::move(control.error()));
-  connection.control = std::move(*control);
-  auto ring = UsbTransferRing::start(
-      {connection.context, connection.handle, endpoint->address, settings_.transfers, transfer_bytes, place});
-  if (!ring) return tl::unexpected(std::move(ring.error()));
-  connection.ring = std::move(*ring);
-  description_ = {opened->eye.bus, opened->eye.serial, endpoint->max_packet};
+  TRY(check(settings_, transfer_bytes));
+  connection.control = TRY(UsbControl::create(connection.handle));
+  connection.ring = TRY(UsbTransferRing::start(
+      {connection.context, connection.handle, endpoint->address, settings_.transfers, transfer_bytes, place}));
+  description_ = {opened.eye.bus, opened.eye.serial, endpoint->max_packet};
   return {};
 }
 
@@ -194,9 +197,7 @@ hal::Result<std::size_t> UsbTransport::control(std::uint8_t request, std::span<c
     return tl::unexpected(usb_error(bytes, description_.serial, "request " + std::to_string(request)));
   }
   if (request == protocol::number(protocol::Request::reset_pipes)) {
-    if (auto restarted = connection_->ring->restart(deadline_ns); !restarted) {
-      return tl::unexpected(std::move(restarted.error()));
-    }
+    TRY(connection_->ring->restart(deadline_ns));
   }
   return in ? static_cast<std::size_t>(bytes) : std::size_t{0};
 }

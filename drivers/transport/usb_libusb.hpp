@@ -6,7 +6,8 @@
 #include <span>
 #include <string>
 
-#include "drivers/protocol/usb_identity.hpp"
+#include "drivers/protocol/bus.hpp"
+#include "drivers/transport/cable.hpp"
 #include "drivers/transport/usb_eye_list.hpp"
 #include "drivers/transport/usb_transfer_ring.hpp"
 #include "hal/byte_transport.hpp"
@@ -18,7 +19,7 @@ struct UsbSettings {
   /// Linux gives all programs together so much for transfers (usbfs_memory_mb = 16).
   static constexpr std::size_t in_flight_limit = std::size_t{16} << 20U;
 
-  protocol::UsbIdentity identity = protocol::usb_eye_identity;
+  protocol::UsbIdentity identity = protocol::usb_bus.identity;
   std::string serial;  ///< empty: the first eye that is found
   int transfers = 32;  ///< in flight, 8 .. 32
   /// Rounded up to whole packets of the endpoint. Up to 16 KiB, a transfer is one request to every host controller;
@@ -69,5 +70,7 @@ class UsbTransport final : public hal::ByteTransport {
   hal::TransportDescription description_;
   std::unique_ptr<Connection> connection_;
 };
+
+extern const Cable usb_cable;
 
 }  // namespace compueye::transport

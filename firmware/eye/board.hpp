@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/eye/source_kinds.hpp"
 #include "hal/eye_geometry.hpp"
 #include "hal/result.hpp"
 #include "recon/reconstructor.hpp"
@@ -32,12 +33,12 @@ struct SensorSettings {
 };
 
 struct SourceSettings {
-  std::string kind;            ///< back end: "sim", "usb" or "hid"
+  std::string kind;            ///< of source_kinds
   std::string serial;          ///< which device of that back end; empty, on a cable: the first one there is
   double frame_rate_hz = 0.0;  ///< > 0
   int fifo_frames = 0;         ///< frames a simulated device can hold before it loses one, >= 1
 
-  [[nodiscard]] bool simulated() const noexcept { return kind == "sim"; }
+  [[nodiscard]] bool simulated() const noexcept { return bus_of_kind(kind) == nullptr; }
 };
 
 struct ReconstructionSettings {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/protocol/usb_identity.hpp"
+#include "drivers/protocol/bus.hpp"
 
 namespace compueye::hil {
 
@@ -15,7 +15,7 @@ namespace compueye::hil {
 struct UsbEntry {
   int port = 4;
   int address = 1;
-  protocol::UsbIdentity identity = protocol::usb_eye_identity;
+  protocol::UsbIdentity identity = protocol::usb_bus.identity;
   std::string serial = {};  ///< as Linux notes it; empty: it did not
 
   [[nodiscard]] std::string sys_path() const;     ///< "/sys/devices/..."
@@ -29,7 +29,7 @@ struct HidEntry {
   int port = 6;
   int number = 1;
   std::string serial = {};
-  protocol::UsbIdentity identity = protocol::hid_eye_identity;
+  protocol::UsbIdentity identity = protocol::hid_bus.identity;
 
   [[nodiscard]] std::string name() const { return "hidraw" + std::to_string(number); }
   [[nodiscard]] std::vector<std::string> sys_paths() const;

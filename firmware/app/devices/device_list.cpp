@@ -126,9 +126,8 @@ Json devices_json(const AttachedEyes& attached, const std::vector<ListedBoard>& 
   }
   Json eyes = Json::array();
   for (const AttachedEye& eye : attached.eyes) eyes.push_back(json_of(eye));
-  return {{"attached", std::move(eyes)},        {"notes", attached.notes},
-          {"devices", std::move(devices)},      {"broken", std::move(broken)},
-          {"back_ends", {"sim", "usb", "hid"}}, {"back_ends_not_built_in", {"spi"}}};
+  return {{"attached", std::move(eyes)}, {"notes", attached.notes},        {"devices", std::move(devices)},
+          {"broken", std::move(broken)}, {"back_ends", source_kind_names}, {"back_ends_not_built_in", {"spi"}}};
 }
 
 }  // namespace compueye::firmware

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "firmware/app/devices/attached_eyes.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/source_list.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "firmware/app/recording/recorded_with.hpp"
-#include "firmware/eye/board_source.hpp"
+#include "firmware/eye/source_list.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {

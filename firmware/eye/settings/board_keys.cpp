@@ -214,7 +214,7 @@ std::vector<KeySpec> source_keys() {
       {.section = "source",
        .name = "kind",
        .type = choice,
-       .choices = {"sim", "usb", "hid"},
+       .choices = {source_kind_names.begin(), source_kind_names.end()},
        .required = true,
        .meaning = "simulated, or an eye on USB or HID",
        .store = [](Board& b, const V& v) { b.source.kind = text_of(v); }},

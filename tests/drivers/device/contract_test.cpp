@@ -16,14 +16,14 @@ namespace {
 
 /// Frames of two packets or reports each, the channel in the middle in the first; nothing else in the stream, so that
 /// a count of packets is one of frames.
-protocol::EmulatorSettings two_part_eye(EmulatedBus bus) {
+protocol::EmulatorSettings two_part_eye(const Bus* bus) {
   protocol::EmulatorSettings settings = protocol::tests::eye_settings(bus, 64);
   settings.events = false;
   settings.descriptor.most_payload = 75;
   return settings;
 }
 
-SourceUnderTest eye_under_test(EmulatedBus bus, DeviceSettings wanted) {
+SourceUnderTest eye_under_test(const Bus* bus, DeviceSettings wanted) {
   // The contract has one source at a time, and its eye has to outlive it.
   auto device = std::make_shared<std::unique_ptr<protocol::DeviceEmulator>>();
   SourceUnderTest test;
@@ -45,8 +45,8 @@ SourceUnderTest eye_under_test(EmulatedBus bus, DeviceSettings wanted) {
 }  // namespace
 
 TEST_CASE("an eye on USB or HID keeps the contract of sample sources") {
-  for (const EmulatedBus bus : protocol::tests::both_buses) {
-    CAPTURE(bus == EmulatedBus::hid);
+  for (const Bus* const bus : protocol::buses) {
+    CAPTURE(bus == &hid_bus);
     DeviceSettings wanted = source_settings(bus);
     wanted.recovery_limit_ns = 0;  // the contract wants to be told at once
     check_sample_source_contract(eye_under_test(bus, wanted));
@@ -57,7 +57,7 @@ TEST_CASE("an eye on USB or HID keeps the contract of sample sources") {
 }
 
 TEST_CASE("the contract notices when faults do not reach the eye") {
-  for (const EmulatedBus bus : protocol::tests::both_buses) {
+  for (const Bus* const bus : protocol::buses) {
     SourceUnderTest test = eye_under_test(bus, source_settings(bus));
     test.lose_frames = [](hal::SampleSource&, int) {};
     test.lose_channel = [](hal::SampleSource&, int) {};

@@ -37,9 +37,9 @@ TEST_CASE("settings out of range are named with their range") {
   CHECK(check_settings({}));
   for (const Case& each : cases) {
     CAPTURE(each.word);
-    DeviceSettings settings = source_settings(EmulatedBus::usb);
+    DeviceSettings settings = source_settings(&usb_bus);
     each.spoil(settings);
-    const EyeRig rig(protocol::tests::eye_settings(EmulatedBus::usb), settings);
+    const EyeRig rig(protocol::tests::eye_settings(&usb_bus), settings);
     REQUIRE_FALSE(rig.made());
     CHECK(rig.made().error().code == ErrorCode::out_of_range);
     CHECK(rig.made().error().sentence.find(each.word) != std::string::npos);
@@ -69,6 +69,6 @@ TEST_CASE("the configuration is what was asked for, or the device's limits are n
   settings.format = SampleFormat::u12;
   CHECK(configuration_for(settings, device).error().code == ErrorCode::out_of_range);
   settings = {};
-  settings.bus = DeviceBus::hid;
+  settings.bus = &protocol::hid_bus;
   CHECK(configuration_for(settings, device).error().code == ErrorCode::unsupported);
 }

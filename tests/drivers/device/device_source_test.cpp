@@ -8,15 +8,15 @@ using namespace compueye::device;
 using namespace compueye::device::tests;
 using hal::DropReason;
 using hal::ErrorCode;
-using protocol::tests::both_buses;
+using protocol::buses;
 using protocol::tests::eye_settings;
 
 TEST_CASE("an eye is described as its descriptor says") {
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     const auto emulator = eye_settings(bus, 100, 5);
     EyeRig rig(emulator);
     const hal::SourceDescription& d = rig.source().describe();
-    CHECK(d.backend == (bus == EmulatedBus::hid ? "hid" : "usb"));
+    CHECK(d.backend == (bus == &hid_bus ? "hid" : "usb"));
     CHECK(d.serial == emulator.descriptor.serial);
     CHECK(d.firmware == emulator.descriptor.firmware);
     CHECK(d.channels == 100);
@@ -29,14 +29,13 @@ TEST_CASE("an eye is described as its descriptor says") {
 
 TEST_CASE("an eye of any size and depth streams without a loss, from the first frame to the last") {
   struct Eye {
-    EmulatedBus bus;
+    const Bus* bus;
     int channels, bits;
     std::uint16_t most_payload;
   };
-  const Eye eyes[] = {{EmulatedBus::usb, 1, 12, 65535},   {EmulatedBus::usb, 64, 16, 65535},
-                      {EmulatedBus::usb, 6400, 24, 1000}, {EmulatedBus::usb, 65535, 12, 65535},
-                      {EmulatedBus::hid, 1, 12, 65535},   {EmulatedBus::hid, 37, 8, 65535},
-                      {EmulatedBus::hid, 200, 12, 65535}};
+  const Eye eyes[] = {{&usb_bus, 1, 12, 65535},     {&usb_bus, 64, 16, 65535}, {&usb_bus, 6400, 24, 1000},
+                      {&usb_bus, 65535, 12, 65535}, {&hid_bus, 1, 12, 65535},  {&hid_bus, 37, 8, 65535},
+                      {&hid_bus, 200, 12, 65535}};
   for (const Eye& eye : eyes) {
     CAPTURE(eye.channels);
     auto emulator = eye_settings(eye.bus, eye.channels);
@@ -63,8 +62,8 @@ TEST_CASE("an eye of any size and depth streams without a loss, from the first f
 }
 
 TEST_CASE("no eye, another eye, another version: create() and start() say so with the serial") {
-  for (const EmulatedBus bus : both_buses) {
-    CAPTURE(bus == EmulatedBus::hid);
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus == &hid_bus);
     DeviceSettings ours = source_settings(bus);
     ours.serial = "CE-77";
     const EyeRig other(eye_settings(bus), ours);
@@ -105,7 +104,7 @@ TEST_CASE("no eye, another eye, another version: create() and start() say so wit
 }
 
 TEST_CASE("when recovery is given up read() says why, again and again, and a new start works") {
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     DeviceSettings settings = source_settings(bus);
     settings.recovery_limit_ns = 3 * second;
     EyeRig rig(eye_settings(bus), settings);
@@ -134,7 +133,7 @@ TEST_CASE("when recovery is given up read() says why, again and again, and a new
 
 TEST_CASE("frames come again within 2 s after the eye was plugged in again, however long it was away") {
   std::int64_t worst_ns = 0;
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {
       CAPTURE(seed);
       EyeRig rig(eye_settings(bus, 64, seed));
@@ -182,7 +181,7 @@ TEST_CASE("an eye that comes back with other channels is refused") {
     bool swapped_ = false;
     int opened_ = 0;
   };
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     hal::VirtualClock clock;
     auto make = [&](int channels) {
       auto emulator = eye_settings(bus, channels);
@@ -204,8 +203,8 @@ TEST_CASE("an eye that comes back with other channels is refused") {
 }
 
 TEST_CASE("a reader that comes late loses frames to the device's memory, and only those") {
-  for (const EmulatedBus bus : both_buses) {
-    CAPTURE(bus == EmulatedBus::hid);
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus == &hid_bus);
     auto emulator = eye_settings(bus, 64);
     emulator.fifo_bytes = 4096;
     EyeRig rig(emulator);
@@ -223,7 +222,7 @@ TEST_CASE("a reader that comes late loses frames to the device's memory, and onl
 }
 
 TEST_CASE("a reader with deadlines shorter than a request recovers nothing, but is told so and loses no account") {
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     for (const std::int64_t wanted : {400 * ms, 40 * second}) {
       EyeRig rig(eye_settings(bus));
       REQUIRE(rig.start());
@@ -250,7 +249,7 @@ TEST_CASE("a reader with deadlines shorter than a request recovers nothing, but 
 }
 
 TEST_CASE("reading uses the heap neither for frames, nor for damage, nor for time-outs") {
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     auto emulator = eye_settings(bus, 640);
     emulator.fifo_bytes = 16384;
     std::uint64_t at_frame = 10;

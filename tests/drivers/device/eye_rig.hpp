@@ -19,9 +19,11 @@
 /// An emulated eye with a source on it, and what it truly made.
 namespace compueye::device::tests {
 
-using protocol::EmulatedBus;
+using protocol::Bus;
 using protocol::EmulatorFault;
 using protocol::FaultKind;
+using protocol::hid_bus;
+using protocol::usb_bus;
 
 inline constexpr std::int64_t ms = 1'000'000;
 inline constexpr std::int64_t second = 1'000'000'000;
@@ -54,9 +56,9 @@ class RunGenerator {
   std::uint64_t base_ = 0;
 };
 
-inline DeviceSettings source_settings(EmulatedBus bus) {
+inline DeviceSettings source_settings(const Bus* bus) {
   DeviceSettings settings;
-  settings.bus = bus == EmulatedBus::hid ? DeviceBus::hid : DeviceBus::usb;
+  settings.bus = bus;
   settings.first_config_id = 1;
   settings.exposure_ns = 1 * ms;
   return settings;

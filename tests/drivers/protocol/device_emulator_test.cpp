@@ -11,7 +11,7 @@ using hal::DropReason;
 using hal::ErrorCode;
 
 TEST_CASE("the emulator describes itself page by page on both buses") {
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     EmulatedEye eye(eye_settings(bus, 150, 4));
     REQUIRE(eye.transport.open());
     const auto descriptor = eye.identify();
@@ -26,7 +26,7 @@ TEST_CASE("the emulator describes itself page by page on both buses") {
 }
 
 TEST_CASE("requests: what each state allows, and why the others are refused") {
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     EmulatedEye eye(eye_settings(bus));
     REQUIRE(eye.transport.open());
     std::array<std::byte, Configuration::bytes> configuration{}, bad{};
@@ -65,7 +65,7 @@ TEST_CASE("requests: what each state allows, and why the others are refused") {
 }
 
 TEST_CASE("requests that no host of ours sends are refused without harm") {
-  DeviceEmulator device = DeviceEmulator::create(eye_settings(EmulatedBus::usb), shown(12)).value();
+  DeviceEmulator device = DeviceEmulator::create(eye_settings(&usb_bus), shown(12)).value();
   Random random(1);
   std::uint64_t stalled = 0;
   for (int trial = 0; trial < 5000; ++trial) {
@@ -76,7 +76,7 @@ TEST_CASE("requests that no host of ours sends are refused without harm") {
     stalled += transfer.outcome == DeviceEmulator::Outcome::stalled ? 1 : 0;
   }
   CHECK(stalled > 4000);
-  DeviceEmulator hid = DeviceEmulator::create(eye_settings(EmulatedBus::hid), shown(12)).value();
+  DeviceEmulator hid = DeviceEmulator::create(eye_settings(&hid_bus), shown(12)).value();
   for (int trial = 0; trial < 5000; ++trial) {
     auto report = random_bytes(random, below(random, 5) == 0 ? below(random, 70) : hid_report_bytes);
     if (!report.empty()) report[0] = static_cast<std::byte>(random() % 7);
@@ -88,11 +88,11 @@ TEST_CASE("requests that no host of ours sends are refused without harm") {
 }
 
 TEST_CASE("frames come in time and in order, with the samples that were shown") {
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     for (const int channels : {1, 37, 64, 300}) {
       CAPTURE(channels);
       EmulatorSettings settings = eye_settings(bus, channels);
-      if (bus == EmulatedBus::usb) settings.descriptor.most_payload = 100;  // several packets a frame
+      if (bus == &usb_bus) settings.descriptor.most_payload = 100;  // several packets a frame
       EmulatedEye eye(settings);
       REQUIRE(eye.start());
       const std::int64_t started_ns = eye.clock.now_ns(), period_ns = eye.wanted().period_ns();
@@ -116,7 +116,7 @@ TEST_CASE("frames come in time and in order, with the samples that were shown") 
 }
 
 TEST_CASE("a host that does not read loses frames, and is told exactly how many") {
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     EmulatorSettings settings = eye_settings(bus);
     settings.fifo_bytes = 3000;
     EmulatedEye eye(settings);
@@ -142,7 +142,7 @@ TEST_CASE("a host that does not read loses frames, and is told exactly how many"
 }
 
 TEST_CASE("illumination settles before frames carry its tag; dark means every lamp off") {
-  EmulatedEye eye(eye_settings(EmulatedBus::usb));
+  EmulatedEye eye(eye_settings(&usb_bus));
   REQUIRE(eye.start());
   auto block = eye.frame();
   REQUIRE(block);
@@ -180,20 +180,20 @@ TEST_CASE("illumination settles before frames carry its tag; dark means every la
 }
 
 TEST_CASE("settings that cannot work are refused") {
-  EmulatorSettings small = eye_settings(EmulatedBus::usb);
+  EmulatorSettings small = eye_settings(&usb_bus);
   small.fifo_bytes = 100;
   CHECK(DeviceEmulator::create(small, shown(12)).error().code == ErrorCode::out_of_range);
-  EmulatorSettings deep = eye_settings(EmulatedBus::hid);
+  EmulatorSettings deep = eye_settings(&hid_bus);
   deep.descriptor = descriptor_of(64, 14);
   CHECK(DeviceEmulator::create(deep, shown(12)).error().code == ErrorCode::out_of_range);
-  CHECK(DeviceEmulator::create(eye_settings(EmulatedBus::usb), {}).error().code == ErrorCode::usage);
-  EmulatorSettings nameless = eye_settings(EmulatedBus::usb);
+  CHECK(DeviceEmulator::create(eye_settings(&usb_bus), {}).error().code == ErrorCode::usage);
+  EmulatorSettings nameless = eye_settings(&usb_bus);
   nameless.descriptor.serial.clear();
   CHECK(DeviceEmulator::create(nameless, shown(12)).error().code == ErrorCode::out_of_range);
 }
 
 TEST_CASE("the emulated transport fails as a real one does") {
-  EmulatedEye eye(eye_settings(EmulatedBus::usb));
+  EmulatedEye eye(eye_settings(&usb_bus));
   std::array<std::byte, 64> bytes{};
   CHECK(eye.transport.read(bytes, 0).error().code == ErrorCode::usage);
   CHECK(eye.request(Request::stop).error().code == ErrorCode::usage);

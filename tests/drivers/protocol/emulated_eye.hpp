@@ -11,7 +11,7 @@
 
 namespace compueye::protocol::tests {
 
-inline EmulatorSettings eye_settings(EmulatedBus bus, int channels = 64, std::uint64_t seed = 1) {
+inline EmulatorSettings eye_settings(const Bus* bus, int channels = 64, std::uint64_t seed = 1) {
   EmulatorSettings settings;
   settings.bus = bus;
   settings.descriptor = descriptor_of(channels, 12, seed);
@@ -36,7 +36,5 @@ class EmulatedEye : public SmallHost {
   DeviceEmulator device;
   EmulatedTransport transport;
 };
-
-inline constexpr std::array both_buses{EmulatedBus::usb, EmulatedBus::hid};
 
 }  // namespace compueye::protocol::tests

@@ -19,9 +19,9 @@ constexpr std::int64_t ms = 1'000'000;
 /// Runs `check` on both buses with an eye that has streamed a few frames.
 template <class Check>
 void on_streaming_eyes(Check&& check) {
-  for (const EmulatedBus bus : both_buses) {
+  for (const Bus* const bus : buses) {
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-      CAPTURE(bus == EmulatedBus::hid);
+      CAPTURE(bus == &hid_bus);
       CAPTURE(seed);
       EmulatorSettings settings = eye_settings(bus, 64 + static_cast<int>(seed) * 5, seed);
       settings.events = false;  // a lost packet then is a lost part of a frame

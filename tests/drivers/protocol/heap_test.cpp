@@ -10,8 +10,8 @@ using namespace compueye::protocol::tests;
 using compueye::tests::heap_use_of_this_thread;
 
 TEST_CASE("from bytes to frames nothing uses the heap, damaged or not") {
-  for (const EmulatedBus bus : both_buses) {
-    CAPTURE(bus == EmulatedBus::hid);
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus == &hid_bus);
     EmulatorSettings settings = eye_settings(bus, 640);
     settings.fifo_bytes = 8192;
     settings.descriptor.most_payload = 301;

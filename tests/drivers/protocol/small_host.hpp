@@ -33,7 +33,7 @@ class SmallHost {
   static constexpr std::int64_t second = 1'000'000'000;
 
   /// The eye is one that shows `shown(bits)`. Transport and clock must outlive the host and may be made after it.
-  SmallHost(hal::ByteTransport& line, hal::Clock& time, EmulatedBus bus, const DeviceDescriptor& descriptor)
+  SmallHost(hal::ByteTransport& line, hal::Clock& time, const Bus* bus, const DeviceDescriptor& descriptor)
       : bits(descriptor.bits),
         channels(descriptor.channels),
         stream(descriptor.packet_limits()),
@@ -42,15 +42,15 @@ class SmallHost {
         line_(line),
         time_(time),
         bus_(bus),
-        chunk_(bus == EmulatedBus::hid ? hid_report_bytes : 16384) {}
+        chunk_(bus == &hid_bus ? hid_report_bytes : 16384) {}
 
   hal::Result<std::size_t> request(Request request, std::span<const std::byte> payload = {},
                                    std::span<std::byte> reply = {}) {
     return line_.control(number(request), payload, reply, time_.now_ns() + request_ns);
   }
   hal::Result<DeviceDescriptor> identify() {
-    DescriptorPages pages(is_hid() ? hid_page_bytes : usb_page_bytes, line_.describe().bus);
-    std::vector<std::byte> page(usb_page_bytes);
+    DescriptorPages pages(bus_->page_bytes, line_.describe().bus);
+    std::vector<std::byte> page(bus_->page_bytes);
     while (!pages.complete()) {
       const auto got = request(Request::get_desc, pages.request(), std::span(page).first(pages.reply_bytes()));
       if (!got) return tl::unexpected(got.error());
@@ -121,7 +121,7 @@ class SmallHost {
     return true;
   }
 
-  [[nodiscard]] bool is_hid() const { return bus_ == EmulatedBus::hid; }
+  [[nodiscard]] bool is_hid() const { return bus_ == &hid_bus; }
   [[nodiscard]] const hal::FrameAccount& account() const { return is_hid() ? reports.account() : packets.account(); }
 
   int bits, channels;
@@ -134,7 +134,7 @@ class SmallHost {
  private:
   hal::ByteTransport& line_;
   hal::Clock& time_;
-  EmulatedBus bus_;
+  const Bus* bus_;
   std::vector<std::byte> chunk_;
   std::uint32_t next_config_id_ = 1;
   bool begun_ = false;

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "drivers/protocol/bus.hpp"
 #include "drivers/protocol/cobs.hpp"
 #include "drivers/protocol/configuration.hpp"
 #include "drivers/protocol/crc32c.hpp"
@@ -12,7 +13,6 @@
 #include "drivers/protocol/packet_stream.hpp"
 #include "drivers/protocol/requests.hpp"
 #include "drivers/protocol/status.hpp"
-#include "drivers/protocol/usb_identity.hpp"
 #include "tests/drivers/protocol/wire_samples.hpp"
 #include "tests/drivers/specification_page.hpp"
 
@@ -65,26 +65,21 @@ TEST_CASE("the specification's numbers are those of the code") {
 }
 
 TEST_CASE("page, code and udev rules agree on how an eye names itself") {
-  struct Case {
-    UsbIdentity identity;
-    const char* rules;
-  };
-  const std::map<std::string, Case> cases{{"USB", {usb_eye_identity, "generic-usb"}},
-                                          {"HID", {hid_eye_identity, "generic-hid"}}};
   const Page page("protocol.md");
   std::size_t seen = 0;
   for (const Row& row : page.rows("USB identity")) {
-    if (!cases.contains(row[0])) continue;
-    const Case& c = cases.at(row[0]);
-    CHECK(number_in(row[1]) == c.identity.vendor);
-    CHECK(number_in(row[2]) == c.identity.product);
-    std::ifstream file(std::string(COMPUEYE_SOURCE_DIR "/boards/") + c.rules + "/70-compueye.rules");
+    const auto named = std::find_if(buses.begin(), buses.end(), [&](const Bus* bus) { return bus->title == row[0]; });
+    if (named == buses.end()) continue;
+    const Bus& bus = **named;
+    CHECK(number_in(row[1]) == bus.identity.vendor);
+    CHECK(number_in(row[2]) == bus.identity.product);
+    std::ifstream file(COMPUEYE_SOURCE_DIR "/boards/generic-" + std::string(bus.name) + "/70-compueye.rules");
     const std::string rules{std::istreambuf_iterator<char>(file), {}};
     CHECK(rules.find("{idVendor}==\"" + row[1].substr(2) + "\"") != std::string::npos);
     CHECK(rules.find("{idProduct}==\"" + row[2].substr(2) + "\"") != std::string::npos);
     ++seen;
   }
-  CHECK(seen == cases.size());
+  CHECK(seen == buses.size());
 }
 
 TEST_CASE("the specification's CRC vectors hold") {

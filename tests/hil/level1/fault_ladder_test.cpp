@@ -25,14 +25,14 @@ const std::vector<ExpectedOutcome>& expected_outcomes() {
 }
 
 /// Frames of two to four packets or reports.
-protocol::EmulatorSettings ladder_eye(EmulatedBus bus, std::uint64_t seed) {
+protocol::EmulatorSettings ladder_eye(const Bus* bus, std::uint64_t seed) {
   auto emulator = protocol::tests::eye_settings(bus, 64 + static_cast<int>(seed) * 5, seed);
   emulator.descriptor.most_payload = 75;
   return emulator;
 }
 
 std::uint64_t parts_a_frame(const protocol::EmulatorSettings& emulator) {
-  const int most = emulator.bus == EmulatedBus::hid ? protocol::hid_channels_per_report : 50;
+  const int most = emulator.bus == &hid_bus ? protocol::hid_channels_per_report : 50;
   return static_cast<std::uint64_t>((emulator.descriptor.channels + most - 1) / most);
 }
 
@@ -44,7 +44,7 @@ struct Ending {
 /// Plays one fault on an eye that streams, and looks on until it is over.
 class Conversation {
  public:
-  Conversation(const FaultScript& script, EmulatedBus bus, std::uint64_t seed)
+  Conversation(const FaultScript& script, const Bus* bus, std::uint64_t seed)
       : script_(script), emulator_(ladder_eye(bus, seed)), rig_(emulator_, settings(bus)), seed_(seed) {}
 
   Ending play() {
@@ -59,7 +59,7 @@ class Conversation {
   [[nodiscard]] EyeRig& rig() { return rig_; }
 
  private:
-  static DeviceSettings settings(EmulatedBus bus) {
+  static DeviceSettings settings(const Bus* bus) {
     DeviceSettings settings = source_settings(bus);
     settings.recovery_limit_ns = recovery_limit_ns;
     return settings;
@@ -163,7 +163,7 @@ void check_counters(const std::vector<hal::Counter>& failures, const ExpectedOut
 
 /// All seeds of one row; the longest that it took.
 std::int64_t check_row(const ExpectedOutcome& expected, const FaultScript& script) {
-  const EmulatedBus bus = expected.bus == "hid" ? EmulatedBus::hid : EmulatedBus::usb;
+  const Bus* const bus = expected.bus == "hid" ? &hid_bus : &usb_bus;
   std::int64_t worst_ms = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     CAPTURE(expected.fault);

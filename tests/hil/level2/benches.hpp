@@ -21,7 +21,7 @@ namespace compueye::hil {
 
 /// An eye as the emulator shows it, with a link fast enough not to matter.
 inline protocol::EmulatorSettings eye(const std::string& serial, int channels = 64,
-                                      protocol::EmulatedBus bus = protocol::EmulatedBus::usb) {
+                                      const protocol::Bus* bus = &protocol::usb_bus) {
   protocol::EmulatorSettings settings;
   settings.bus = bus;
   settings.descriptor = protocol::tests::descriptor_of(channels, 12);
@@ -32,7 +32,7 @@ inline protocol::EmulatorSettings eye(const std::string& serial, int channels = 
 }
 
 inline protocol::EmulatorSettings hid_eye(const std::string& serial, int channels = 64) {
-  return eye(serial, channels, protocol::EmulatedBus::hid);
+  return eye(serial, channels, &protocol::hid_bus);
 }
 
 inline transport::UsbSettings with_serial(std::string serial) {
@@ -54,7 +54,7 @@ inline constexpr std::int64_t request_ns = protocol::control_deadline_ns;
 #endif
 
 /// An eye in its port and the smallest host in front of the real library.
-template <class Port, class Transport, class Settings, protocol::EmulatedBus bus>
+template <class Port, class Transport, class Settings, const protocol::Bus* bus>
 struct Bench {
   Bench(Testbed& testbed, const protocol::EmulatorSettings& eye, Settings settings = {})
       : port(testbed, eye), transport(std::move(settings)), host(transport, clock, bus, eye.descriptor) {
@@ -84,8 +84,8 @@ struct Bench {
   protocol::tests::SmallHost host;
   std::array<std::byte, 16384> chunk{};
 };
-using UsbBench = Bench<UsbPort, transport::UsbTransport, transport::UsbSettings, protocol::EmulatedBus::usb>;
-using HidBench = Bench<HidPort, transport::HidTransport, transport::HidSettings, protocol::EmulatedBus::hid>;
+using UsbBench = Bench<UsbPort, transport::UsbTransport, transport::UsbSettings, &protocol::usb_bus>;
+using HidBench = Bench<HidPort, transport::HidTransport, transport::HidSettings, &protocol::hid_bus>;
 
 /// The eye `serial`, which the bench asks for, is pulled out of a running stream; `other` comes in its place, then it
 /// comes back.

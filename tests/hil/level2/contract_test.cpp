@@ -13,7 +13,7 @@ namespace {
 
 /// Frames of two packets or reports each, the channel in the middle in the first; nothing else in the stream, so that
 /// a count of packets is one of frames.
-protocol::EmulatorSettings two_part_eye(protocol::EmulatedBus bus) {
+protocol::EmulatorSettings two_part_eye(const protocol::Bus* bus) {
   protocol::EmulatorSettings settings = eye("CE-1", 64, bus);
   settings.events = false;
   settings.descriptor.most_payload = 75;
@@ -21,9 +21,9 @@ protocol::EmulatorSettings two_part_eye(protocol::EmulatedBus bus) {
 }
 
 template <class Port, class Transport>
-void check_contract(device::DeviceBus bus, protocol::EmulatedBus emulated) {
+void check_contract(const protocol::Bus* bus) {
   HIL_TESTBED(testbed);
-  Port port(testbed, two_part_eye(emulated));
+  Port port(testbed, two_part_eye(bus));
   bool plugged = false;
   hal::tests::SourceUnderTest test;
   test.make = [&](hal::Clock& clock) -> std::unique_ptr<hal::SampleSource> {
@@ -51,11 +51,11 @@ void check_contract(device::DeviceBus bus, protocol::EmulatedBus emulated) {
 }  // namespace
 
 TEST_CASE("usb: an eye behind libusb keeps the contract of sample sources") {
-  check_contract<UsbPort, transport::UsbTransport>(device::DeviceBus::usb, protocol::EmulatedBus::usb);
+  check_contract<UsbPort, transport::UsbTransport>(&protocol::usb_bus);
 }
 
 TEST_CASE("hid: an eye behind hidapi keeps the contract of sample sources") {
-  check_contract<HidPort, transport::HidTransport>(device::DeviceBus::hid, protocol::EmulatedBus::hid);
+  check_contract<HidPort, transport::HidTransport>(&protocol::hid_bus);
 }
 
 }  // namespace compueye::hil

@@ -28,7 +28,7 @@ TEST_CASE("hid: an eye is listed and selected by its serial") {
   CHECK(eyes->at(0).serial == "LEFT");
   CHECK(eyes->at(0).bus == left.name());
   CHECK(eyes->at(0).product == "emulated eye");
-  CHECK(eyes->at(0).reachable);
+  CHECK(eyes->at(0).reachable());
   CHECK(eyes->at(1).serial == "RIGHT");
 
   transport::HidTransport wanted({.serial = "RIGHT"});

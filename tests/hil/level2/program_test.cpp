@@ -10,7 +10,6 @@
 #include <thread>
 #include <vector>
 
-#include "firmware/app/devices/attached_eyes.hpp"
 #include "firmware/app/devices/device_list.hpp"
 #include "firmware/app/run/run_options.hpp"
 #include "firmware/app/run/run_session.hpp"
@@ -25,9 +24,9 @@ using firmware::RunOptions;
 
 constexpr int channels = 64;
 
-protocol::EmulatorSettings eye_of(const std::string& serial, protocol::EmulatedBus bus) {
+protocol::EmulatorSettings eye_of(const std::string& serial, const protocol::Bus* bus) {
   protocol::EmulatorSettings settings = eye(serial, channels, bus);
-  settings.descriptor = protocol::tests::descriptor_of(channels, bus == protocol::EmulatedBus::usb ? 16 : 12);
+  settings.descriptor = protocol::tests::descriptor_of(channels, bus == &protocol::usb_bus ? 16 : 12);
   settings.descriptor.serial = serial;
   return settings;
 }
@@ -76,8 +75,8 @@ void check_balanced(const Json& frames) {
 
 TEST_CASE("program: devices lists what is attached, with what the eyes say of themselves") {
   HIL_TESTBED(testbed);
-  UsbPort usb(testbed, eye_of("CE-USB", protocol::EmulatedBus::usb));
-  HidPort hid(testbed, eye_of("CE-HID", protocol::EmulatedBus::hid));
+  UsbPort usb(testbed, eye_of("CE-USB", &protocol::usb_bus));
+  HidPort hid(testbed, eye_of("CE-HID", &protocol::hid_bus));
   usb.plug();
   hid.plug();
   UsbBench::wait_for_boot();
@@ -103,8 +102,8 @@ TEST_CASE("program: devices lists what is attached, with what the eyes say of th
 
 TEST_CASE("program: run streams frames from an eye on USB and on HID") {
   HIL_TESTBED(testbed);
-  UsbPort usb(testbed, eye_of("CE-USB", protocol::EmulatedBus::usb));
-  HidPort hid(testbed, eye_of("CE-HID", protocol::EmulatedBus::hid));
+  UsbPort usb(testbed, eye_of("CE-USB", &protocol::usb_bus));
+  HidPort hid(testbed, eye_of("CE-HID", &protocol::hid_bus));
   usb.plug();
   hid.plug();
   UsbBench::wait_for_boot();
@@ -120,7 +119,7 @@ TEST_CASE("program: run streams frames from an eye on USB and on HID") {
 
 TEST_CASE("program: what was recorded on USB replays into the same pictures every time") {
   HIL_TESTBED(testbed);
-  UsbPort usb(testbed, eye_of("CE-USB", protocol::EmulatedBus::usb));
+  UsbPort usb(testbed, eye_of("CE-USB", &protocol::usb_bus));
   usb.plug();
   UsbBench::wait_for_boot();
   const test::TemporaryFolder folder;
@@ -150,7 +149,7 @@ TEST_CASE("program: what was recorded on USB replays into the same pictures ever
 
 TEST_CASE("program: a run goes on when the eye is plugged in again") {
   HIL_TESTBED(testbed);
-  UsbPort usb(testbed, eye_of("CE-USB", protocol::EmulatedBus::usb));
+  UsbPort usb(testbed, eye_of("CE-USB", &protocol::usb_bus));
   usb.plug();
   UsbBench::wait_for_boot();
   const test::TemporaryFolder folder;
@@ -180,7 +179,7 @@ TEST_CASE("program: an eye that is not there, or does not fit the board, is an e
   const auto absent = run(options_of(board("generic-usb"), 1));
   REQUIRE_FALSE(absent);
   CHECK(absent.error().code == hal::ErrorCode::not_found);
-  protocol::EmulatorSettings settings = eye_of("CE-SMALL", protocol::EmulatedBus::usb);
+  protocol::EmulatorSettings settings = eye_of("CE-SMALL", &protocol::usb_bus);
   settings.descriptor = protocol::tests::descriptor_of(16, 16);
   settings.descriptor.serial = "CE-SMALL";
   UsbPort usb(testbed, settings);

@@ -29,10 +29,7 @@ protocol::EmulatorSettings busy_eye() {
 class ShimmedEye {
  public:
   ShimmedEye()
-      : cable(busy_eye()),
-        eye_(cable),
-        file(eye_),
-        host(transport, clock, protocol::EmulatedBus::usb, busy_eye().descriptor) {
+      : cable(busy_eye()), eye_(cable), file(eye_), host(transport, clock, &protocol::usb_bus, busy_eye().descriptor) {
     entry.serial = cable.serial();
     shim_usbfs(entry.device_file(), file);
     testbed_.add(entry.text());

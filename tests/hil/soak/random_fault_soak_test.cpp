@@ -33,11 +33,11 @@ std::string describe(const Incident& incident, std::int64_t now_ns) {
 }
 
 /// Until the device has made `blocks` frames, or as many as were wanted last.
-SoakResult soak(EmulatedBus bus, std::uint64_t blocks, std::uint64_t seed) {
+SoakResult soak(const Bus* bus, std::uint64_t blocks, std::uint64_t seed) {
   auto emulator = protocol::tests::eye_settings(bus, 16, seed);
   emulator.fifo_bytes = 8192;
   emulator.descriptor.most_payload = 15;  // two packets a frame
-  if (bus == EmulatedBus::hid) emulator.descriptor.most_payload = 65535;
+  if (bus == &hid_bus) emulator.descriptor.most_payload = 65535;
   EyeRig rig(emulator);
   RandomFaults faults(seed, emulator.descriptor.serial);
   SoakResult result;
@@ -79,7 +79,7 @@ std::uint64_t unaccounted(const SoakResult& result) {
 }
 
 void soak_both(std::uint64_t blocks, std::uint64_t seed) {
-  for (const EmulatedBus bus : protocol::tests::both_buses) {
+  for (const Bus* const bus : protocol::buses) {
     const auto began = std::chrono::steady_clock::now();
     const SoakResult result = soak(bus, blocks, seed);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - began;
@@ -95,7 +95,7 @@ void soak_both(std::uint64_t blocks, std::uint64_t seed) {
       drops += ", " + std::string(hal::name(static_cast<hal::DropReason>(k))) + " " +
                std::to_string(result.account.dropped[k]);
     }
-    MESSAGE((bus == EmulatedBus::hid ? "hid: " : "usb: ")
+    MESSAGE((bus == &hid_bus ? "hid: " : "usb: ")
             << result.made << " blocks of 16 samples made in " << result.incidents << " incidents, "
             << result.account.delivered << " delivered" << drops << "; unaccounted " << unaccounted(result)
             << "; longest outage " << result.worst_outage_ns / ms << " ms; " << result.failures << "; "

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "firmware/eye/board.hpp"
 #include "hal/clock.hpp"
@@ -29,5 +30,23 @@ struct EyeWanted {
 /// Whether a source is of as many channels and as deep as the board's eye. Error mismatch at `place`.
 [[nodiscard]] hal::Result<void> check_fits(const hal::SourceDescription& source, const Board& board,
                                            const std::string& place);
+
+/// An eye on a cable: where it is, and what it says of itself or why it could not be asked.
+struct AttachedEye {
+  std::string kind;  ///< as [source] kind names it
+  std::string bus;   ///< "usb 1-4", "hidraw2"
+  std::string serial;
+  std::string product;
+  hal::Result<hal::SourceDescription> description;
+};
+
+struct AttachedEyes {
+  std::vector<AttachedEye> eyes;   ///< by kind, then bus
+  std::vector<std::string> notes;  ///< a bus that could not be looked at, a sentence each
+};
+
+/// Looks for eyes on every bus and asks each what it is, for a second at most. An eye that another program runs is
+/// listed with the reason why it could not be asked.
+[[nodiscard]] AttachedEyes list_attached_eyes(hal::Clock& clock);
 
 }  // namespace compueye::firmware

@@ -1,0 +1,95 @@
+#include "firmware/eye/source_list.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "drivers/device/device_source.hpp"
+#include "drivers/transport/hid_hidapi.hpp"
+#include "drivers/transport/usb_libusb.hpp"
+#include "firmware/eye/simulated_board.hpp"
+#include "firmware/eye/source_kinds.hpp"
+#include "hal/try.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using Source = std::unique_ptr<hal::SampleSource>;
+
+/// A line a bus of protocol::buses.
+constexpr std::array cables{&transport::usb_cable, &transport::hid_cable};
+static_assert(cables.size() == protocol::buses.size());
+
+const transport::Cable& cable_on(const protocol::Bus& bus) {
+  return **std::find_if(cables.begin(), cables.end(), [&](const auto* cable) { return &cable->bus == &bus; });
+}
+
+hal::Result<Source> simulated(const Board& board, EyeWanted wanted, hal::Clock& clock) {
+  auto settings = simulated_eye_settings(board, std::move(wanted.scene), wanted.seed);
+  if (!wanted.lossless) settings.frame_rate_hz = board.source.frame_rate_hz;
+  settings.frame_limit = wanted.frame_limit;
+  return TRY(sim::SimulatedEye::create(std::move(settings), clock));
+}
+
+hal::Result<Source> attached(const Board& board, const protocol::Bus& bus, hal::Clock& clock) {
+  device::DeviceSettings settings;
+  settings.bus = &bus;
+  settings.serial = board.source.serial;
+  settings.frame_rate_hz = board.source.frame_rate_hz;
+  auto transport = cable_on(bus).connect(settings.serial);
+  Source eye = TRY(device::DeviceSource::create(std::move(settings), std::move(transport), clock));
+  TRY(check_fits(eye->describe(), board, "eye " + eye->describe().serial));
+  return eye;
+}
+
+/// What an eye says of itself.
+hal::Result<hal::SourceDescription> ask(const transport::Cable& cable, const transport::FoundEye& eye,
+                                        hal::Clock& clock) {
+  if (!eye.reachable()) return tl::unexpected(eye.refusal);
+  device::DeviceSettings settings;
+  settings.bus = &cable.bus;
+  settings.serial = eye.serial;
+  settings.frame_rate_hz = 1.0;
+  settings.start_limit_ns = 1'000'000'000;
+  return TRY(device::DeviceSource::create(std::move(settings), cable.connect(eye.serial), clock))->describe();
+}
+
+}  // namespace
+
+hal::Result<Source> board_source(const Board& board, EyeWanted wanted, hal::Clock& clock) {
+  const protocol::Bus* const bus = bus_of_kind(board.source.kind);
+  if (bus == nullptr) return simulated(board, std::move(wanted), clock);
+  if (wanted.lossless) {
+    return hal::fail(hal::ErrorCode::usage, "--lossless",
+                     fmt::format("cannot be asked of the eye of board {}, which waits for nobody; record it and replay "
+                                 "the recording",
+                                 board.name));
+  }
+  return attached(board, *bus, clock);
+}
+
+hal::Result<void> check_fits(const hal::SourceDescription& source, const Board& board, const std::string& place) {
+  if (source.channels == board.eye.ommatidia() && source.bits == board.sensor.bits) return {};
+  return hal::fail(hal::ErrorCode::mismatch, place,
+                   fmt::format("is of {} channels of {} bits, board {} has {} of {}; name the board that belongs to it",
+                               source.channels, source.bits, board.name, board.eye.ommatidia(), board.sensor.bits));
+}
+
+AttachedEyes list_attached_eyes(hal::Clock& clock) {
+  AttachedEyes found;
+  for (const transport::Cable* cable : cables) {
+    const auto eyes = cable->list();
+    if (!eyes) {
+      found.notes.push_back(eyes.error().text());
+      continue;
+    }
+    for (const transport::FoundEye& eye : *eyes) {
+      found.eyes.push_back({std::string(cable->bus.name), eye.bus, eye.serial, eye.product, ask(*cable, eye, clock)});
+    }
+  }
+  return found;
+}
+
+}  // namespace compueye::firmware
