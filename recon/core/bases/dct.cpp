@@ -1,6 +1,7 @@
 #include "recon/core/bases/dct.hpp"
 
 #include "recon/core/bases/strip.hpp"
+#include "recon/core/bases/strip_product.hpp"
 
 namespace compueye::recon::core {
 namespace {
@@ -36,11 +37,11 @@ COMPUEYE_INLINE void halving_forward(const T* c, std::size_t n, T* strip, T* out
   while (n % 2 == 0) {
     fold(strip, work, n);
     n /= 2;
-    strip_product(c, n, std::size_t{1}, work, out + stride * lanes, 2 * stride, n);
+    strip_product(c, n, work, out + stride * lanes, 2 * stride);
     c += n * n;
     stride *= 2;
   }
-  strip_product(c, n, std::size_t{1}, strip, out, stride, n);
+  strip_product(c, n, strip, out, stride);
 }
 
 /// The transpose of halving_forward: levels undone from the innermost outward. `work` takes n rows.
@@ -57,7 +58,7 @@ COMPUEYE_INLINE void halving_inverse(const T* c, std::size_t length, const T* in
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t l = 0; l < lanes; ++l) work[k * lanes + l] = in[k * stride * lanes + l];
   }
-  strip_product(c, std::size_t{1}, n, work, out, std::size_t{1}, n);
+  strip_product_transposed(c, n, work, out);
   while (n < length) {
     const std::size_t odd_stride = stride;
     stride /= 2;
@@ -65,7 +66,7 @@ COMPUEYE_INLINE void halving_inverse(const T* c, std::size_t length, const T* in
     for (std::size_t k = 0; k < n; ++k) {
       for (std::size_t l = 0; l < lanes; ++l) work[k * lanes + l] = in[(k * odd_stride + stride) * lanes + l];
     }
-    strip_product(c, std::size_t{1}, n, work, work + n * lanes, std::size_t{1}, n);
+    strip_product_transposed(c, n, work, work + n * lanes);
     unfold(out, work + n * lanes, n);
     n *= 2;
   }
@@ -153,12 +154,12 @@ COMPUEYE_STAGE void strip_forward(const DctTable<T>& table, T* strip, T* __restr
       rotated_forward(rotation, table.halving(half / 2), half, work, strip + half * lanes, out, stride, work);
       rotation += half;
     } else {
-      strip_product(table.halving(n), half, std::size_t{1}, work, out + stride * lanes, 2 * stride, half);
+      strip_product(table.halving(n), half, work, out + stride * lanes, 2 * stride);
     }
     n = half;
     stride *= 2;
   }
-  strip_product(table.halving(n), n, std::size_t{1}, strip, out, stride, n);
+  strip_product(table.halving(n), n, strip, out, stride);
 }
 
 /// The transpose of strip_forward: levels undone from the innermost outward.
@@ -175,7 +176,7 @@ COMPUEYE_STAGE void strip_inverse(const DctTable<T>& table, const T* __restrict 
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t l = 0; l < lanes; ++l) work[k * lanes + l] = strip[k * stride * lanes + l];
   }
-  strip_product(table.halving(n), std::size_t{1}, n, work, out, std::size_t{1}, n);
+  strip_product_transposed(table.halving(n), n, work, out);
   while (n < table.length) {
     const std::size_t apart = stride;
     stride /= 2;
@@ -187,7 +188,7 @@ COMPUEYE_STAGE void strip_inverse(const DctTable<T>& table, const T* __restrict 
       for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t l = 0; l < lanes; ++l) work[k * lanes + l] = strip[(k * apart + stride) * lanes + l];
       }
-      strip_product(table.halving(2 * n), std::size_t{1}, n, work, work + n * lanes, std::size_t{1}, n);
+      strip_product_transposed(table.halving(2 * n), n, work, work + n * lanes);
       odd = work + n * lanes;
     }
     unfold(out, odd, n);

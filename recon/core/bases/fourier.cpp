@@ -1,6 +1,7 @@
 #include "recon/core/bases/fourier.hpp"
 
 #include "recon/core/bases/strip.hpp"
+#include "recon/core/bases/strip_product.hpp"
 
 namespace compueye::recon::core {
 namespace {
@@ -9,8 +10,11 @@ template <class T>
 COMPUEYE_INLINE void transform_2d(bool inverse, const Fourier2d<T>& psi, const T* in, T* out, T* scratch) {
   const auto multiply = [inverse](const T* table, std::size_t n, const T* strip, T* result)
       __attribute__((always_inline)) {
-    const std::size_t row_step = inverse ? 1 : n, sample_step = inverse ? n : 1;
-    strip_product(table, row_step, sample_step, strip, result, std::size_t{1}, n);
+    if (inverse) {
+      strip_product_transposed(table, n, strip, result);
+    } else {
+      strip_product(table, n, strip, result, std::size_t{1});
+    }
   };
   along_columns(
       psi.rows, psi.cols, psi.cols, in, out, scratch, [&](T * strip, T * result, T*) __attribute__((always_inline)) {
