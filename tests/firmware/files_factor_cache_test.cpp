@@ -7,6 +7,7 @@
 
 #include "firmware/files/factor_cache.hpp"
 #include "tests/firmware/temporary_folder.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -68,8 +69,7 @@ TEST_CASE("a factor of another format version is stale") {
   bytes[8] = 99;
   folder.file(path.filename().string(), bytes);
   const auto result = load_factor(folder.path(), key);
-  CHECK(result.error().code == ErrorCode::stale);
-  CHECK(result.error().sentence.find("99") != std::string::npos);
+  test::check_error(result, ErrorCode::stale, path.string(), {"99", "3"});
 }
 
 TEST_CASE("a damaged factor is never taken for a good one") {

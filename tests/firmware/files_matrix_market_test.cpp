@@ -9,11 +9,13 @@
 #include "firmware/files/matrix_market.hpp"
 #include "firmware/files/response_file.hpp"
 #include "tests/firmware/temporary_folder.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
 using compueye::recon::Response;
 using compueye::test::bytes_of;
+using compueye::test::Named;
 using compueye::test::TemporaryFolder;
 using hal::ErrorCode;
 
@@ -129,77 +131,117 @@ TEST_CASE("a hostile .mtx is refused with file, line, value and expectation") {
     std::string text;
     ErrorCode code;
     int line;  // 0: the error is about the whole file
-    const char* words;
+    Named named;
   };
   const std::string pattern = "%%MatrixMarket matrix coordinate pattern general\n";
   const std::vector<Case> cases{
-      {"empty", "", ErrorCode::bad_format, 1, "no Matrix Market banner"},
-      {"no banner", "2 2 1\n1 1 1\n", ErrorCode::bad_format, 1, "no Matrix Market banner"},
-      {"short banner", "%%MatrixMarket matrix coordinate\n", ErrorCode::bad_format, 1, "3 words, expected 5"},
-      {"vector", "%%MatrixMarket vector coordinate real general\n", ErrorCode::bad_format, 1, "'vector'"},
-      {"complex", "%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 1 0\n", ErrorCode::unsupported, 1,
-       "'complex'"},
-      {"hermitian", "%%MatrixMarket matrix coordinate real hermitian\n", ErrorCode::unsupported, 1, "'hermitian'"},
-      {"array pattern", "%%MatrixMarket matrix array pattern general\n", ErrorCode::bad_format, 1, "'pattern'"},
-      {"array symmetric", "%%MatrixMarket matrix array real symmetric\n", ErrorCode::bad_format, 1, "'symmetric'"},
-      {"only banner", real_general, ErrorCode::bad_format, 2, "end of the file"},
-      {"short sizes", real_general + "2 2\n1 1 1\n", ErrorCode::bad_format, 2, "number of entries"},
-      {"long sizes", real_general + "2 2 1 1\n1 1 1\n", ErrorCode::bad_format, 2, "'1' too much"},
-      {"zero rows", real_general + "0 2 1\n1 1 1\n", ErrorCode::out_of_range, 2, "'0' for the number of rows"},
-      {"negative columns", real_general + "2 -2 1\n1 1 1\n", ErrorCode::out_of_range, 2, "'-2'"},
-      {"float rows", real_general + "2.5 2 1\n1 1 1\n", ErrorCode::bad_format, 2, "'2.5'"},
-      {"huge rows", real_general + "2000000000 2 1\n1 1 1\n", ErrorCode::unsupported, 2, "2000000000 x 2"},
-      {"overflowing", real_general + "99999999999999999999 2 1\n", ErrorCode::out_of_range, 2, "99999999999999999999"},
-      {"no entries", real_general + "2 2 0\n", ErrorCode::out_of_range, 2, "no entries"},
-      {"absurd count", real_general + "2 2 4611686018427387000\n1 1 1\n", ErrorCode::bad_format, 2,
-       "4611686018427387000"},
-      {"huge array", "%%MatrixMarket matrix array real general\n16777216 67108864\n1\n", ErrorCode::bad_format, 2,
-       "can hold"},
-      {"row 0", real_general + "2 2 1\n0 1 1\n", ErrorCode::out_of_range, 3,
-       "'0' for the row, expected a whole number from 1 to 2"},
-      {"row beyond", real_general + "2 3 1\n3 1 1\n", ErrorCode::out_of_range, 3, "'3' for the row"},
-      {"column beyond", real_general + "2 3 2\n1 1 1\n\n2 4 1\n", ErrorCode::out_of_range, 5,
-       "'4' for the column, expected a whole number from 1 to 3"},
-      {"NaN", real_general + "2 2 1\n1 1 nan\n", ErrorCode::out_of_range, 3, "'nan', expected a finite number"},
-      {"infinity", real_general + "2 2 1\n1 1 -inf\n", ErrorCode::out_of_range, 3, "'-inf'"},
-      {"overflow", real_general + "2 2 1\n1 1 1e999\n", ErrorCode::out_of_range, 3,
-       "'1e999', which no double can hold"},
-      {"words", real_general + "2 2 1\n1 1 one\n", ErrorCode::bad_format, 3, "'one'"},
-      {"Fortran exponent", real_general + "2 2 1\n1 1 1.0D+00\n", ErrorCode::bad_format, 3, "'1.0D+00'"},
-      {"decimal comma", real_general + "2 2 1\n1 1 0,5\n", ErrorCode::bad_format, 3, "'0,5'"},
-      {"two signs", real_general + "2 2 1\n1 1 +-5\n", ErrorCode::bad_format, 3, "'+-5'"},
-      {"value missing", real_general + "2 2 1\n1 1\n", ErrorCode::bad_format, 3, "the end of the line"},
-      {"column missing", pattern + "2 2 1\n1 \n", ErrorCode::bad_format, 3, "the end of the line"},
-      {"value too much", real_general + "2 2 1\n1 1 1 0\n", ErrorCode::bad_format, 3, "'0' too much"},
-      {"pattern with value", pattern + "2 2 1\n1 1 1\n", ErrorCode::bad_format, 3, "a row and a column"},
-      {"float integer", "%%MatrixMarket matrix coordinate integer general\n1 1 1\n1 1 1.5\n", ErrorCode::bad_format, 3,
-       "'1.5'"},
-      {"large integer", "%%MatrixMarket matrix coordinate integer general\n1 1 1\n1 1 9007199254740993\n",
-       ErrorCode::out_of_range, 3, "9007199254740993"},
-      {"fewer", real_general + "2 2 2\n1 1 1.000000\n", ErrorCode::bad_format, 0,
-       "ends after 1 entries, expected the 2"},
-      {"more", real_general + "2 2 1\n1 1 1\n2 2 1\n", ErrorCode::bad_format, 4, "goes on after the 1"},
-      {"sum overflows", real_general + "1 1 2\n1 1 1e308\n1 1 1e308\n", ErrorCode::out_of_range, 0, "(0, 0)"},
-      {"upper", "%%MatrixMarket matrix coordinate real symmetric\n2 2 1\n1 2 5\n", ErrorCode::bad_format, 3, "(1, 2)"},
-      {"skew diagonal", "%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n1 1 5\n", ErrorCode::bad_format,
-       3, "below the diagonal"},
-      {"symmetric not square", "%%MatrixMarket matrix coordinate real symmetric\n2 3 1\n1 1 5\n", ErrorCode::bad_format,
-       2, "square"},
-      {"array short", "%%MatrixMarket matrix array real general\n2 1\n1.00000\n", ErrorCode::bad_format, 0,
-       "ends after 1"},
-      {"array long", "%%MatrixMarket matrix array real general\n1 1\n1\n2\n", ErrorCode::bad_format, 4, "goes on"},
-      {"array two a line", "%%MatrixMarket matrix array real general\n2 1\n1 2\n", ErrorCode::bad_format, 3,
-       "one value a line"},
-      {"binary", real_general + std::string("2 2 1\n1 1 \0\x01\xff", 13), ErrorCode::bad_format, 3, "'\?\?\?'"},
+      {"empty", "", ErrorCode::bad_format, 1, {"%%MatrixMarket"}},
+      {"no banner", "2 2 1\n1 1 1\n", ErrorCode::bad_format, 1, {"%%MatrixMarket"}},
+      {"short banner", "%%MatrixMarket matrix coordinate\n", ErrorCode::bad_format, 1, {"3", "5"}},
+      {"vector", "%%MatrixMarket vector coordinate real general\n", ErrorCode::bad_format, 1, {"vector", "matrix"}},
+      {"complex",
+       "%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 1 0\n",
+       ErrorCode::unsupported,
+       1,
+       {"complex", "real", "integer", "pattern"}},
+      {"hermitian",
+       "%%MatrixMarket matrix coordinate real hermitian\n",
+       ErrorCode::unsupported,
+       1,
+       {"hermitian", "general", "symmetric"}},
+      {"array pattern",
+       "%%MatrixMarket matrix array pattern general\n",
+       ErrorCode::bad_format,
+       1,
+       {"pattern", "real", "integer"}},
+      {"array symmetric",
+       "%%MatrixMarket matrix array real symmetric\n",
+       ErrorCode::bad_format,
+       1,
+       {"symmetric", "general"}},
+      {"only banner", real_general, ErrorCode::bad_format, 2, {"rows", "columns", "entries"}},
+      {"short sizes", real_general + "2 2\n1 1 1\n", ErrorCode::bad_format, 2, {"entries", "0", "4611686018427387904"}},
+      {"long sizes", real_general + "2 2 1 1\n1 1 1\n", ErrorCode::bad_format, 2, {"1"}},
+      {"zero rows", real_general + "0 2 1\n1 1 1\n", ErrorCode::out_of_range, 2, {"0", "rows", "1"}},
+      {"negative columns", real_general + "2 -2 1\n1 1 1\n", ErrorCode::out_of_range, 2, {"-2", "columns"}},
+      {"float rows", real_general + "2.5 2 1\n1 1 1\n", ErrorCode::bad_format, 2, {"2.5", "rows"}},
+      {"huge rows",
+       real_general + "2000000000 2 1\n1 1 1\n",
+       ErrorCode::unsupported,
+       2,
+       {"2000000000", "2", "16777216"}},
+      {"overflowing",
+       real_general + "99999999999999999999 2 1\n",
+       ErrorCode::out_of_range,
+       2,
+       {"99999999999999999999"}},
+      {"no entries", real_general + "2 2 0\n", ErrorCode::out_of_range, 2, {"entries"}},
+      {"absurd count",
+       real_general + "2 2 4611686018427387000\n1 1 1\n",
+       ErrorCode::bad_format,
+       2,
+       {"4611686018427387000", "7"}},
+      {"huge array",
+       "%%MatrixMarket matrix array real general\n16777216 67108864\n1\n",
+       ErrorCode::bad_format,
+       2,
+       {"1125899906842624", "3"}},
+      {"row 0", real_general + "2 2 1\n0 1 1\n", ErrorCode::out_of_range, 3, {"0", "row", "1", "2"}},
+      {"row beyond", real_general + "2 3 1\n3 1 1\n", ErrorCode::out_of_range, 3, {"3", "row", "1", "2"}},
+      {"column beyond",
+       real_general + "2 3 2\n1 1 1\n\n2 4 1\n",
+       ErrorCode::out_of_range,
+       5,
+       {"4", "column", "1", "3"}},
+      {"NaN", real_general + "2 2 1\n1 1 nan\n", ErrorCode::out_of_range, 3, {"nan"}},
+      {"infinity", real_general + "2 2 1\n1 1 -inf\n", ErrorCode::out_of_range, 3, {"-inf"}},
+      {"overflow", real_general + "2 2 1\n1 1 1e999\n", ErrorCode::out_of_range, 3, {"1e999"}},
+      {"words", real_general + "2 2 1\n1 1 one\n", ErrorCode::bad_format, 3, {"one"}},
+      {"Fortran exponent", real_general + "2 2 1\n1 1 1.0D+00\n", ErrorCode::bad_format, 3, {"1.0D+00"}},
+      {"decimal comma", real_general + "2 2 1\n1 1 0,5\n", ErrorCode::bad_format, 3, {"0,5"}},
+      {"two signs", real_general + "2 2 1\n1 1 +-5\n", ErrorCode::bad_format, 3, {"+-5"}},
+      {"value missing", real_general + "2 2 1\n1 1\n", ErrorCode::bad_format, 3, {"value"}},
+      {"column missing", pattern + "2 2 1\n1 \n", ErrorCode::bad_format, 3, {"column", "1", "2"}},
+      {"value too much", real_general + "2 2 1\n1 1 1 0\n", ErrorCode::bad_format, 3, {"0", "row", "column", "value"}},
+      {"pattern with value", pattern + "2 2 1\n1 1 1\n", ErrorCode::bad_format, 3, {"1", "row", "column"}},
+      {"float integer",
+       "%%MatrixMarket matrix coordinate integer general\n1 1 1\n1 1 1.5\n",
+       ErrorCode::bad_format,
+       3,
+       {"1.5"}},
+      {"large integer",
+       "%%MatrixMarket matrix coordinate integer general\n1 1 1\n1 1 9007199254740993\n",
+       ErrorCode::out_of_range,
+       3,
+       {"9007199254740993"}},
+      {"fewer", real_general + "2 2 2\n1 1 1.000000\n", ErrorCode::bad_format, 0, {"1", "2"}},
+      {"more", real_general + "2 2 1\n1 1 1\n2 2 1\n", ErrorCode::bad_format, 4, {"1"}},
+      {"sum overflows", real_general + "1 1 2\n1 1 1e308\n1 1 1e308\n", ErrorCode::out_of_range, 0, {"(0, 0)", "inf"}},
+      {"upper",
+       "%%MatrixMarket matrix coordinate real symmetric\n2 2 1\n1 2 5\n",
+       ErrorCode::bad_format,
+       3,
+       {"(1, 2)", "symmetric"}},
+      {"skew diagonal",
+       "%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n1 1 5\n",
+       ErrorCode::bad_format,
+       3,
+       {"(1, 1)", "skew-symmetric"}},
+      {"symmetric not square",
+       "%%MatrixMarket matrix coordinate real symmetric\n2 3 1\n1 1 5\n",
+       ErrorCode::bad_format,
+       2,
+       {"symmetric", "2", "3"}},
+      {"array short", "%%MatrixMarket matrix array real general\n2 1\n1.00000\n", ErrorCode::bad_format, 0, {"1", "2"}},
+      {"array long", "%%MatrixMarket matrix array real general\n1 1\n1\n2\n", ErrorCode::bad_format, 4, {"1"}},
+      {"array two a line", "%%MatrixMarket matrix array real general\n2 1\n1 2\n", ErrorCode::bad_format, 3, {"2"}},
+      {"binary", real_general + std::string("2 2 1\n1 1 \0\x01\xff", 13), ErrorCode::bad_format, 3, {"'\?\?\?'"}},
   };
   for (const Case& c : cases) {
     CAPTURE(c.what);
     const auto path = folder.file("hostile.mtx", c.text);
-    const auto a = read_matrix_market(path);
-    REQUIRE_FALSE(a.has_value());
-    CHECK(a.error().code == c.code);
-    CHECK(a.error().place == path.string() + (c.line > 0 ? ":" + std::to_string(c.line) : ""));
-    CHECK_MESSAGE(a.error().sentence.find(c.words) != std::string::npos, a.error().sentence);
+    const std::string place = path.string() + (c.line > 0 ? ":" + std::to_string(c.line) : "");
+    test::check_error(read_matrix_market(path), c.code, place, c.named);
   }
   CHECK(read_matrix_market(folder / "missing.mtx").error().code == ErrorCode::not_found);
 }
@@ -237,9 +279,7 @@ TEST_CASE("a response is read and written by its extension") {
 
   for (const char* name : {"a.csv", "a", "a.mtx.gz"}) {
     CAPTURE(name);
-    const auto write = write_response(folder / name, a);
-    CHECK(write.error().code == ErrorCode::usage);
-    CHECK(write.error().sentence.find(".npy (dense) or .mtx") != std::string::npos);
+    test::check_error(write_response(folder / name, a), ErrorCode::usage, (folder / name).string(), {".npy", ".mtx"});
     CHECK(read_response(folder / name).error().code == ErrorCode::usage);
   }
   CHECK(folder.entries() == 3);
@@ -248,11 +288,8 @@ TEST_CASE("a response is read and written by its extension") {
 TEST_CASE("a dense response that would be too large is refused with its size") {
   const TemporaryFolder folder;
   const Response wide = Response::from_csr(6400, 160 * 160 * 2, std::vector<std::int64_t>(6401, 0), {}, {}).value();
-  const auto result = write_response(folder / "wide.npy", wide);
-  REQUIRE_FALSE(result.has_value());
-  CHECK(result.error().code == ErrorCode::no_space);
-  CHECK(result.error().sentence.find("1.23 GiB") != std::string::npos);
-  CHECK(result.error().sentence.find(".mtx") != std::string::npos);
+  test::check_error(write_response(folder / "wide.npy", wide), ErrorCode::no_space, (folder / "wide.npy").string(),
+                    {"1.23", "GiB", ".mtx"});
   CHECK(folder.entries() == 0);
   const Response small = Response::from_dense(2, 2, {1, 2, 3, 4}).value();
   CHECK(write_response(folder / "small.npy", small, 15).error().code == ErrorCode::no_space);
@@ -262,8 +299,7 @@ TEST_CASE("a dense response that would be too large is refused with its size") {
 TEST_CASE("a dense response with NaN, or beyond float32, is refused") {
   const TemporaryFolder folder;
   const Response large = Response::from_dense(1, 2, {0.0, 1e39}).value();
-  const auto result = write_response(folder / "large.npy", large);
-  CHECK(result.error().code == ErrorCode::out_of_range);
-  CHECK(result.error().sentence.find("(0, 1)") != std::string::npos);
+  test::check_error(write_response(folder / "large.npy", large), ErrorCode::out_of_range,
+                    (folder / "large.npy").string(), {"(0, 1)", "float32"});
   CHECK(folder.entries() == 0);
 }
