@@ -1,10 +1,11 @@
-#include "firmware/eye/board_file.hpp"
+#include "firmware/eye/board.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "firmware/text/nearest_name.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -51,8 +53,8 @@ std::string boards_nearby(const fs::path& given) {
   return fmt::format("; there is no board in '{}' either", beside.string());
 }
 
-}  // namespace
-
+/// The board.toml meant by `given`: a folder that holds one, or the file itself. not_found lists the boards that lie
+/// where `given` was looked for, the nearest name first of all.
 hal::Result<fs::path> find_board_file(const fs::path& given) {
   if (given.empty()) {
     return hal::fail(ErrorCode::usage, "--board", "is empty, expected the folder of a board, such as boards/sim-8x8");
@@ -80,6 +82,7 @@ hal::Result<fs::path> find_board_file(const fs::path& given) {
   return hal::fail(ErrorCode::not_found, given.string(), "the folder has no board.toml" + hint);
 }
 
+/// The text of a regular file. Errors: io, bad_format (something else, or too large).
 hal::Result<std::string> read_board_file(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) {
@@ -101,6 +104,15 @@ hal::Result<std::string> read_board_file(const fs::path& file) {
                      "cannot read the file: " + std::generic_category().message(errno == 0 ? EIO : errno));
   }
   return text.str();
+}
+
+}  // namespace
+
+hal::Result<Board> load_board(const std::string& folder) {
+  const fs::path file = TRY(find_board_file(folder));
+  Board board = TRY(parse_board(TRY(read_board_file(file)), file.string()));
+  board.folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  return board;
 }
 
 }  // namespace compueye::firmware

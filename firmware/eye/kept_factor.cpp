@@ -14,7 +14,7 @@ std::string_view name(FactorOrigin origin) noexcept {
   return "made";
 }
 
-KeptFactor::KeptFactor(std::filesystem::path folder, const FactorKey& key) : folder_(std::move(folder)), key_(key) {
+KeptFactor::KeptFactor(std::string folder, const FactorKey& key) : folder_(std::move(folder)), key_(key) {
   if (folder_.empty()) return;
   auto loaded = load_factor(folder_, key_);
   if (loaded) {

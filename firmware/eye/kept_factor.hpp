@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,7 +23,7 @@ enum class FactorOrigin : std::uint8_t {
 class KeptFactor {
  public:
   /// Looks into `folder`, which need not exist; empty: no cache. Whatever cannot be used is a note, never an error.
-  KeptFactor(std::filesystem::path folder, const FactorKey& key);
+  KeptFactor(std::string folder, const FactorKey& key);
 
   /// The stored factor, once; nothing when there was none that fits.
   [[nodiscard]] std::optional<recon::Factor> take() noexcept { return std::exchange(found_, std::nullopt); }
@@ -37,7 +36,7 @@ class KeptFactor {
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
  private:
-  std::filesystem::path folder_;
+  std::string folder_;
   FactorKey key_;
   std::optional<recon::Factor> found_;
   FactorOrigin origin_ = FactorOrigin::made;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,16 +15,6 @@
 
 namespace compueye::firmware {
 
-/// What a command line says otherwise than the board.
-struct EyeRequest {
-  std::optional<int> iterations;
-  std::optional<double> lambda;  ///< by hand
-  std::optional<double> sigma;   ///< of one sample, for the rule; wins over a lambda that the board states
-  std::optional<int> threads;
-  std::filesystem::path cache;  ///< where what takes long is kept; empty: nowhere
-  recon::Precision precision = recon::Precision::f32;
-};
-
 /// Where lambda came from.
 struct LambdaChoice {
   double value = 0.0;
@@ -33,17 +22,23 @@ struct LambdaChoice {
   double sigma = 0.0;  ///< the rule's noise; meaningful when by_rule
 };
 
+/// `by_hand` where there is one, else by the rule for this solver and basis from the noise `sigma` of one sample.
+/// Errors: those of lambda_by_rule().
+[[nodiscard]] hal::Result<LambdaChoice> choose_lambda(const recon::Response& response, int image_rows, int image_cols,
+                                                      recon::SolverKind solver, recon::BasisKind basis,
+                                                      std::optional<double> by_hand, double sigma);
+
 /// A board made ready to reconstruct: the nominal response of its geometry with the rows of dead ommatidia zero,
 /// lambda, the factor (kept or made) and the reconstructor.
 class ReadyEye {
  public:
-  /// Takes from milliseconds to minutes; `progress` is asked throughout. Errors: those of nominal_response(),
-  /// lambda_by_rule() and Reconstructor::create(); interrupted.
-  [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const EyeRequest& request,
+  /// Takes from milliseconds to minutes; `progress` is asked throughout. What takes long is kept in the folder `cache`
+  /// (empty: nowhere). Errors: those of nominal_response(), lambda_by_rule() and Reconstructor::create(); interrupted.
+  [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const std::string& cache,
                                                   const recon::Progress& progress);
   /// The same on a response that is there already, which only this call looks at.
   [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const LivingResponse& living,
-                                                  const EyeRequest& request, const recon::Progress& progress);
+                                                  const std::string& cache, const recon::Progress& progress);
 
   [[nodiscard]] const recon::Reconstructor& reconstructor() const noexcept { return *reconstructor_; }
   /// Gives the reconstructor away, and with it the right to ask for it.

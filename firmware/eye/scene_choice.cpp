@@ -67,7 +67,7 @@ hal::Result<sim::Scene> choose_scene(const Board& board, const SceneChoice& choi
                      "scene files in TOML cannot be read by this version; name a built-in scene or a PNG file");
   }
   std::error_code ignored;
-  const fs::path path = from_board ? board.folder / name : fs::path(name);
+  const fs::path path = from_board ? fs::path(board.folder) / name : fs::path(name);
   const bool file = !is_built_in(name) && (looks_like_a_file(name) || (from_board && fs::exists(path, ignored)));
   auto scene = file ? scene_from_file(board.object, path) : built_in_scene(board.object, name, choice.seed);
   if (!scene) {

@@ -9,11 +9,7 @@ sim::SimulatedEyeSettings simulated_eye_settings(const Board& board, sim::Scene 
   settings.optics.eye = board.eye;
   settings.optics.object = board.object;
   settings.scenes.push_back(std::move(scene));
-  settings.sensor = {.bits = board.sensor.bits,
-                     .full_scale = board.sensor.full_scale,
-                     .read_noise_lsb = board.sensor.read_noise_lsb,
-                     .dark_level_lsb = board.sensor.dark_level_lsb,
-                     .dead = board.sensor.dead};
+  settings.sensor = board.sensor;
   settings.seed = seed;
   settings.fifo_frames = board.source.fifo_frames;
   settings.serial = board.source.serial;

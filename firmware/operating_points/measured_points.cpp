@@ -48,18 +48,17 @@ std::string title(const Curve& curve) {
 
 Board with_curve(const Board& board, const Curve& curve) {
   Board other = board;
-  ReconstructionSettings& settings = other.reconstruction;
-  settings.solver = curve.solver;
-  settings.basis = curve.basis;
-  settings.constraint = curve.constraint;
-  settings.op = curve.op;
-  settings.warm_start = curve.motion != Motion::none;
-  settings.threads = curve.threads;
+  other.plan.solver = curve.solver;
+  other.plan.precision = curve.precision;
+  other.plan.op = curve.op;
+  other.plan.warm_start = curve.motion != Motion::none;
+  other.plan.threads = curve.threads;
+  other.objective.basis = curve.basis;
+  other.objective.constraint = curve.constraint;
   // Both were chosen for the board's own solver and basis; rho means the same where solver and metric are the same.
-  settings.lambda = std::nullopt;
-  if (curve.solver != board.reconstruction.solver ||
-      recon::metric_of(curve.basis) != recon::metric_of(board.reconstruction.basis)) {
-    settings.rho = std::nullopt;
+  other.lambda = std::nullopt;
+  if (curve.solver != board.plan.solver || recon::metric_of(curve.basis) != recon::metric_of(board.objective.basis)) {
+    other.plan.rho = 0.0;
   }
   return other;
 }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "hal/try.hpp"
+
 namespace compueye::firmware {
 
 hal::Result<PointLadder> make_ladder(const Board& board, const LivingResponse& living, const Sweep& sweep,
-                                     const PointChoice& choice, const EyeRequest& request,
+                                     const PointChoice& choice, const std::string& cache,
                                      const recon::Progress& progress) {
   PointLadder ladder;
   std::vector<Curve> curves;
@@ -15,13 +17,10 @@ hal::Result<PointLadder> make_ladder(const Board& board, const LivingResponse& l
     const auto known = std::find(curves.begin(), curves.end(), point.curve);
     const auto at = static_cast<std::size_t>(known - curves.begin());
     if (known == curves.end()) {
-      EyeRequest asked = request;
-      asked.iterations = point.iterations;
-      asked.precision = point.curve.precision;
-      auto eye = ReadyEye::make(with_curve(board, point.curve), living, asked, progress);
-      if (!eye) return tl::unexpected(std::move(eye.error()));
+      Board curved = with_curve(board, point.curve);
+      curved.plan.iterations = point.iterations;
+      ladder.eyes.push_back(TRY(ReadyEye::make(curved, living, cache, progress)));
       curves.push_back(point.curve);
-      ladder.eyes.push_back(std::move(*eye));
     }
     recon::OperatingPoint operating = ladder.eyes[at].reconstructor().operating_point();
     // The rungs of a curve come by falling iterations, so the eye has most of them: memory for the first is enough.

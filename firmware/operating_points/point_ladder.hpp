@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "firmware/eye/ready_eye.hpp"
@@ -28,9 +29,9 @@ struct PointLadder {
   std::vector<Rung> rungs;
 };
 
-/// `request` says sigma and cache. Errors: those of ReadyEye::make().
+/// `cache` as for ReadyEye::make(). Errors: those of ReadyEye::make().
 [[nodiscard]] hal::Result<PointLadder> make_ladder(const Board& board, const LivingResponse& living, const Sweep& sweep,
-                                                   const PointChoice& choice, const EyeRequest& request,
+                                                   const PointChoice& choice, const std::string& cache,
                                                    const recon::Progress& progress);
 
 /// Solves every frame on the rung that is wanted at its beginning. All rungs were set up before; going from one to the

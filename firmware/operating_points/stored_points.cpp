@@ -296,8 +296,8 @@ Result<void> check_fits(const std::string& path, const Sweep& sweep, const Point
 }  // namespace
 
 PointsKey points_key(const Board& board, const recon::Response& living) {
-  const ReconstructionSettings& settings = board.reconstruction;
-  return {living.content_hash(), this_machine(), settings.constraint, settings.box_lo, settings.box_hi};
+  const recon::Objective& objective = board.objective;
+  return {living.content_hash(), this_machine(), objective.constraint, objective.lo, objective.hi};
 }
 
 std::string points_json(const Sweep& sweep) {

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
+#include <system_error>
 
 namespace compueye::firmware {
 namespace {
@@ -16,6 +18,16 @@ constexpr int most_digits = 17;
 std::string not_a_number(double value) {
   if (std::isnan(value)) return "n/a";
   return value > 0.0 ? "inf" : "-inf";
+}
+
+template <class T>
+std::optional<T> typed(std::string_view text) noexcept {
+  // from_chars knows no plus sign, but people write one.
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
 }
 
 }  // namespace
@@ -69,6 +81,15 @@ std::string bytes(std::uint64_t count) {
     ++unit;
   }
   return fmt::format("{} {}", significant(value, value >= 999.5 ? 4 : 3), units[unit]);
+}
+
+std::optional<double> typed_number(std::string_view text) noexcept {
+  const auto value = typed<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<std::int64_t> typed_whole_number(std::string_view text) noexcept {
+  return typed<std::int64_t>(text);
 }
 
 }  // namespace compueye::firmware

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace compueye::firmware {
 
@@ -22,5 +24,11 @@ namespace compueye::firmware {
 
 /// Bytes in binary units with three significant digits: "512 B", "1.50 KiB", "415 MiB".
 [[nodiscard]] std::string bytes(std::uint64_t count);
+
+// Numbers as people type them: nothing when the text is anything else, in part or as a whole.
+
+/// A finite decimal number, "0.5", "-3", "1e-6".
+[[nodiscard]] std::optional<double> typed_number(std::string_view text) noexcept;
+[[nodiscard]] std::optional<std::int64_t> typed_whole_number(std::string_view text) noexcept;
 
 }  // namespace compueye::firmware

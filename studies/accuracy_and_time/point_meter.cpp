@@ -11,7 +11,6 @@
 
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "hal/try.hpp"
-#include "recon/lambda_rule.hpp"
 #include "recon/setup/quantised_response.hpp"
 
 namespace compueye::firmware {
@@ -36,7 +35,7 @@ std::int64_t process_cpu_ns() noexcept {
 hal::Result<CurveEyes> set_up_curve(const Board& board, const LivingResponse& living, const Curve& curve,
                                     const std::vector<NoiseLevel>& levels, const recon::Progress& progress) {
   CurveEyes eyes;
-  const Board curved = with_curve(board, curve);
+  Board curved = with_curve(board, curve);
   std::optional<recon::Response> rounded;
   if (curve.op && recon::is_lossy(*curve.op)) rounded = recon::quantised(living.response, *curve.op);
   const recon::Response& a = rounded ? *rounded : living.response;
@@ -44,9 +43,8 @@ hal::Result<CurveEyes> set_up_curve(const Board& board, const LivingResponse& li
   const bool shares = curve.solver != recon::SolverKind::tikhonov;
   for (const NoiseLevel& level : levels) {
     if (eyes.by_level.empty() || !shares) {
-      EyeRequest request{std::nullopt, std::nullopt, level.sigma, std::nullopt, {}, curve.precision};
-      if (shares) request.cache = board.folder / ".cache";
-      ReadyEye eye = TRY(ReadyEye::make(curved, living, request, progress));
+      curved.sigma = level.sigma;
+      ReadyEye eye = TRY(ReadyEye::make(curved, living, shares ? board.cache() : std::string(), progress));
       eyes.lambda.push_back(eye.lambda().value);
       eyes.notes.insert(eyes.notes.end(), eye.notes().begin(), eye.notes().end());
       eyes.by_level.push_back(std::move(eye).take_reconstructor());
@@ -54,11 +52,12 @@ hal::Result<CurveEyes> set_up_curve(const Board& board, const LivingResponse& li
     }
     const recon::Reconstructor& first = eyes.by_level.front();
     recon::Objective objective = first.objective();
-    objective.lambda =
-        TRY(recon::lambda_by_rule(a, board.object.rows, board.object.cols, curve.solver, curve.basis, level.sigma));
+    objective.lambda = TRY(choose_lambda(a, board.object.rows, board.object.cols, curve.solver, curve.basis,
+                                         std::nullopt, level.sigma))
+                           .value;
     recon::Plan plan = first.plan();
     // What followed from lambda follows from this one.
-    plan.rho = curved.reconstruction.rho.value_or(0.0);
+    plan.rho = curved.plan.rho;
     if (curve.solver == recon::SolverKind::tsvd) plan.rank = 0;
     // In double a factor is made anew every time: what is kept is in float32.
     std::optional<recon::Factor> factor;

@@ -212,9 +212,9 @@ Sweep head_of(const Board& board, const SweepOptions& options, const LivingRespo
   sweep.board = board.name;
   sweep.response_hash = living.response.content_hash();
   sweep.machine = this_machine();
-  sweep.constraint = board.reconstruction.constraint;
-  sweep.lo = board.reconstruction.box_lo;
-  sweep.hi = board.reconstruction.box_hi;
+  sweep.constraint = board.objective.constraint;
+  sweep.lo = board.objective.lo;
+  sweep.hi = board.objective.hi;
   sweep.channels = living.response.rows();
   sweep.seeing = static_cast<int>(living.response.seeing_rows().size());
   sweep.image_rows = board.object.rows;

@@ -104,7 +104,7 @@ bool wanted(const std::vector<std::string>& words, std::string_view word) {
 
 /// The board's own basis first, then those that win most often, since time may run out.
 std::vector<BasisKind> bases_of(const SweptForm& form, const Board& board, const SweepOptions& options) {
-  std::vector<BasisKind> order{board.reconstruction.basis};
+  std::vector<BasisKind> order{board.objective.basis};
   if (!form.boards_basis_only) {
     order.insert(order.end(), {BasisKind::dct, BasisKind::tv});
     for (const auto& named : recon::basis_names()) order.push_back(named.kind);
@@ -120,8 +120,8 @@ std::vector<BasisKind> bases_of(const SweptForm& form, const Board& board, const
 std::vector<int> iterations_of(const SweptForm& form, BasisKind basis, const Board& board, bool quick) {
   const std::span<const int> steps = quick ? form.steps->quick : form.steps->whole;
   std::vector<int> iterations(steps.begin(), steps.end());
-  const ReconstructionSettings& own = board.reconstruction;
-  if (form.solver == own.solver && basis == own.basis && form.steps != &once) iterations.push_back(own.iterations);
+  const bool own = form.solver == board.plan.solver && basis == board.objective.basis;
+  if (own && form.steps != &once) iterations.push_back(board.plan.iterations);
   std::sort(iterations.begin(), iterations.end());
   iterations.erase(std::unique(iterations.begin(), iterations.end()), iterations.end());
   return iterations;
@@ -129,10 +129,10 @@ std::vector<int> iterations_of(const SweptForm& form, BasisKind basis, const Boa
 
 void add(const SweptForm& form, const Board& board, const SweepOptions& options, SweepPlan& plan) {
   for (const BasisKind basis : bases_of(form, board, options)) {
-    for (const auto constraint : {board.reconstruction.constraint, recon::ConstraintKind::none}) {
+    for (const auto constraint : {board.objective.constraint, recon::ConstraintKind::none}) {
       if (!recon::supports(form.solver, basis, constraint)) continue;
       Curve curve{form.solver, basis, constraint, form.precision};
-      curve.op = form.op ? form.op : board.reconstruction.op;
+      curve.op = form.op ? form.op : board.plan.op;
       curve.motion = form.motion;
       if (form.all_cores) curve.threads = std::min(this_machine().cores, recon::WorkerThreads::most);
       // A board that names a form of A has it in two lines of the table, a machine with one core its threads.
@@ -146,7 +146,7 @@ void add(const SweptForm& form, const Board& board, const SweepOptions& options,
 
 std::string left_out_note(const SweptForm& form, const Board& board) {
   const std::string_view solver = recon::name(form.solver);
-  const Curve curve{form.solver, board.reconstruction.basis, {}, form.precision, form.op, form.motion};
+  const Curve curve{form.solver, board.objective.basis, {}, form.precision, form.op, form.motion};
   return fmt::format("{} is left out: it takes too long or too much memory with more than {} seeing ommatidia{}",
                      form.boards_basis_only ? title(curve) : std::string(solver), grouped(form.most_rows),
                      form.boards_basis_only ? "" : fmt::format("; --solvers {} asks for it", solver));
@@ -174,7 +174,7 @@ hal::Result<SweepPlan> plan_sweep(const Board& board, const SweepOptions& option
   }
   // What the board would run comes first: a budget may not reach the rest.
   std::stable_partition(plan.curves.begin(), plan.curves.end(), [&](const PlannedCurve& planned) {
-    return planned.curve.solver == board.reconstruction.solver && planned.curve.op == board.reconstruction.op &&
+    return planned.curve.solver == board.plan.solver && planned.curve.op == board.plan.op &&
            planned.curve.precision == Precision::f32;
   });
   if (!plan.curves.empty()) return plan;

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "firmware/eye/kept_factor.hpp"
+#include "firmware/eye/ready_eye.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "hal/try.hpp"
-#include "recon/lambda_rule.hpp"
 #include "recon/option_names.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/penalty_rule.hpp"
@@ -33,7 +33,7 @@ bool shares_objective(recon::SolverKind solver) {
 }
 
 int threads_of(const Board& board, const CompareOptions& options) {
-  return options.threads ? static_cast<int>(*options.threads) : board.reconstruction.threads;
+  return options.threads ? static_cast<int>(*options.threads) : board.plan.threads;
 }
 
 /// Runs the contenders one after the other; factors go from one to the next and, for the next time, into the board's
@@ -47,7 +47,7 @@ class Runner {
         samples_(samples),
         clock_(clock),
         progress_(progress),
-        op_(board.reconstruction.op),
+        op_(board.plan.op),
         rounded_(op_ && recon::is_lossy(*op_) ? std::optional(recon::quantised(samples.response, *op_)) : std::nullopt),
         response_(rounded_ ? *rounded_ : samples.response),
         hash_(response_.content_hash()),
@@ -69,20 +69,16 @@ class Runner {
 
  private:
   [[nodiscard]] recon::Plan plan_of(const Contender& contender) const {
-    recon::Plan plan;
+    recon::Plan plan = board_.plan;
     plan.solver = contender.solver;
-    plan.iterations = board_.reconstruction.iterations;
+    plan.warm_start = false;
     if (!recon::uses_factor(contender.solver))
       plan.iterations = std::min(more_without_factor * plan.iterations, 1'000'000);
     if (options_.iterations) plan.iterations = static_cast<int>(*options_.iterations);
-    plan.relaxation = board_.reconstruction.relaxation;
-    plan.op = op_;
     plan.threads = threads_of(board_, options_);
     // The board's rho was chosen for the board's metric, and is no step of pdhg.
     const bool penalised = contender.solver == recon::SolverKind::admm || contender.solver == recon::SolverKind::adm;
-    if (penalised && recon::metric_of(contender.basis) == recon::metric_of(board_.reconstruction.basis)) {
-      plan.rho = board_.reconstruction.rho.value_or(0.0);
-    }
+    if (!penalised || recon::metric_of(contender.basis) != recon::metric_of(board_.objective.basis)) plan.rho = 0.0;
     plan.max_reweighted = static_cast<int>(
         std::count_if(samples_.weights.begin(), samples_.weights.end(), [](float w) { return w != 1.0F; }));
     plan.max_reweighted = std::min(plan.max_reweighted, seeing_);
@@ -92,16 +88,16 @@ class Runner {
 
   /// By hand, else the board's for the board's own basis, else by rule.
   [[nodiscard]] Result<double> lambda_of(const Contender& contender) const {
-    if (options_.lambda) return *options_.lambda;
-    const bool boards = contender.basis == board_.reconstruction.basis && shares_objective(contender.solver);
-    if (boards && board_.reconstruction.lambda && !options_.sigma) return *board_.reconstruction.lambda;
-    return recon::lambda_by_rule(response_, board_.object.rows, board_.object.cols, contender.solver, contender.basis,
-                                 samples_.sigma);
+    const bool boards = contender.basis == board_.objective.basis && shares_objective(contender.solver);
+    const std::optional<double> of_board = boards && !options_.sigma ? board_.lambda : std::nullopt;
+    return TRY(choose_lambda(response_, board_.object.rows, board_.object.cols, contender.solver, contender.basis,
+                             options_.lambda ? options_.lambda : of_board, samples_.sigma))
+        .value;
   }
 
   Result<recon::Reconstructor> set_up(const Contender& contender, double lambda) {
-    const recon::Objective objective{contender.basis, contender.constraint, board_.reconstruction.box_lo,
-                                     board_.reconstruction.box_hi, lambda};
+    const recon::Objective objective{contender.basis, contender.constraint, board_.objective.lo, board_.objective.hi,
+                                     lambda};
     const recon::Plan plan = plan_of(contender);
     const int rows = board_.object.rows, cols = board_.object.cols;
     if (!recon::uses_factor(contender.solver)) {
@@ -112,7 +108,7 @@ class Runner {
       if (factor.metric != wanted.metric || factor.rho != wanted.rho || factor.rank != wanted.rank) continue;
       return recon::Reconstructor::create(response_, rows, cols, objective, plan, factor, progress_);
     }
-    KeptFactor kept(board_.folder / ".cache", {hash_, wanted.rho, wanted.order, wanted.metric, wanted.rank});
+    KeptFactor kept(board_.cache(), {hash_, wanted.rho, wanted.order, wanted.metric, wanted.rank});
     auto made = TRY(recon::Reconstructor::create(response_, rows, cols, objective, plan, kept.take(), progress_));
     if (kept.origin() != FactorOrigin::kept) kept.keep(made.factor());
     notes_.insert(notes_.end(), kept.notes().begin(), kept.notes().end());
@@ -230,7 +226,7 @@ Result<std::vector<Contender>> contenders(const CompareOptions& options, recon::
 
 Result<Comparison> compare(const Board& board, const CompareOptions& options, const hal::Clock& clock,
                            const recon::Progress& progress) {
-  const std::vector<Contender> all = TRY(contenders(options, board.reconstruction.constraint));
+  const std::vector<Contender> all = TRY(contenders(options, board.objective.constraint));
   CompareSamples samples = TRY(take_samples(board, options, progress));
   Comparison comparison = TRY(head_of(board, options, samples));
   double done = 0.0;

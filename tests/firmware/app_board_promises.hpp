@@ -20,7 +20,7 @@ namespace compueye::firmware::test {
   if (!board->eye.validate()) return "an eye of a board is valid";
   if (!board->object.validate()) return "an object plane of a board is valid";
   if (!(board->noise_sigma() >= 0.0)) return "noise is a number from 0 on";
-  if (!(board->reconstruction.box_lo < board->reconstruction.box_hi)) return "a box has a width";
+  if (!(board->objective.lo < board->objective.hi)) return "a box has a width";
   const auto& dead = board->sensor.dead;
   const bool within = std::all_of(dead.begin(), dead.end(),
                                   [&](int channel) { return channel >= 0 && channel < board->eye.ommatidia(); });

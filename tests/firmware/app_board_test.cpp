@@ -5,14 +5,14 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <sstream>
 #include <string>
 
-#include "firmware/eye/settings/board_schema.hpp"
-#include "firmware/eye/settings/reconstruction_names.hpp"
-#include "firmware/eye/settings/schema_check.hpp"
+#include "firmware/eye/settings/setting.hpp"
+#include "recon/option_names.hpp"
 #include "tests/firmware/app_board_text.hpp"
 
 using namespace compueye;
@@ -80,13 +80,13 @@ TEST_CASE("a good board is read in natural units, with every default") {
   CHECK(board->source.kind == "sim");
   CHECK(board->source.serial == "SIM0001");
   CHECK(board->source.fifo_frames == 4);
-  CHECK(board->reconstruction.solver == recon::SolverKind::admm);
-  CHECK(board->reconstruction.basis == recon::BasisKind::dct);
-  CHECK(board->reconstruction.constraint == recon::ConstraintKind::box);
-  CHECK(board->reconstruction.box_lo == 0.0);
-  CHECK(board->reconstruction.box_hi == 1.5);
-  CHECK_FALSE(board->reconstruction.lambda.has_value());
-  CHECK_FALSE(board->reconstruction.rho.has_value());
+  CHECK(board->plan.solver == recon::SolverKind::admm);
+  CHECK(board->objective.basis == recon::BasisKind::dct);
+  CHECK(board->objective.constraint == recon::ConstraintKind::box);
+  CHECK(board->objective.lo == 0.0);
+  CHECK(board->objective.hi == 1.5);
+  CHECK_FALSE(board->lambda.has_value());
+  CHECK(board->plan.rho == 0.0);
   CHECK(board->scene.name == "fig2");
 }
 
@@ -123,13 +123,13 @@ TEST_CASE("sections may come as dotted keys, inline tables and with a byte order
 }
 
 TEST_CASE("every lattice, solver, basis and constraint can be named") {
-  for (const std::string_view lattice : find_key("eye", "lattice")->choices) {
+  for (const std::string_view lattice : find_setting("eye", "lattice")->choices) {
     CHECK(hal::lattice_from_name(lattice).has_value());
   }
-  CHECK(find_key("reconstruction", "solver")->choices.size() == solver_names().size());
-  for (const auto& named : solver_names()) CHECK(name(named.kind) == named.name);
-  for (const auto& named : basis_names()) CHECK(name(named.kind) == named.name);
-  for (const auto& named : constraint_names()) CHECK(name(named.kind) == named.name);
+  CHECK(find_setting("reconstruction", "solver")->choices.size() == recon::solver_names().size());
+  for (const auto& named : recon::solver_names()) CHECK(name(named.kind) == named.name);
+  for (const auto& named : recon::basis_names()) CHECK(name(named.kind) == named.name);
+  for (const auto& named : recon::constraint_names()) CHECK(name(named.kind) == named.name);
 
   const std::string plane =
       test::replaced(test::good_board, "interommatidial_angle_deg = 1.5", "lattice = \"plane\"\npitch_mm = 0.2");
@@ -143,26 +143,27 @@ TEST_CASE("every lattice, solver, basis and constraint can be named") {
                                  "solver = \"tikhonov\"\nbasis = \"identity\"\nconstraint = \"none\"\nlambda = 0"),
                   "board.toml");
   REQUIRE_MESSAGE(linear.has_value(), linear.error().text());
-  CHECK(linear->reconstruction.solver == recon::SolverKind::tikhonov);
-  CHECK(linear->reconstruction.basis == recon::BasisKind::identity);
-  CHECK(linear->reconstruction.constraint == recon::ConstraintKind::none);
-  CHECK(linear->reconstruction.lambda == 0.0);
+  CHECK(linear->plan.solver == recon::SolverKind::tikhonov);
+  CHECK(linear->objective.basis == recon::BasisKind::identity);
+  CHECK(linear->objective.constraint == recon::ConstraintKind::none);
+  CHECK(linear->lambda == 0.0);
 }
 
 TEST_CASE("every default in the key table is itself a good value") {
-  for (const KeySpec& spec : board_schema()) {
-    CAPTURE(std::string(spec.section) + "." + std::string(spec.name));
-    CHECK_FALSE((spec.required && spec.fallback.has_value()));
-    CHECK((spec.store != nullptr));
-    CHECK(find_key(spec.section, spec.name) == &spec);
-    if (spec.fallback) CHECK(check_value(spec, *spec.fallback).has_value());
+  for (const Setting& setting : settings()) {
+    CAPTURE(std::string(setting.section) + "." + std::string(setting.key));
+    CHECK_FALSE((setting.required && setting.fallback.has_value()));
+    CHECK((setting.store != nullptr));
+    CHECK((setting.show != nullptr));
+    CHECK(find_setting(setting.section, setting.key) == (setting.section.empty() ? nullptr : &setting));
+    if (setting.fallback) CHECK(check_value(setting, *setting.fallback).has_value());
   }
 }
 
 TEST_CASE("the reference documents every key as the loader knows it") {
   const std::string reference = text_of(fs::path(COMPUEYE_SOURCE_DIR) / "docs" / "board-file.md");
   REQUIRE_FALSE(reference.empty());
-  for (const SectionSpec& section : board_sections()) {
+  for (const Section& section : sections()) {
     CAPTURE(section.name);
     CHECK(holds(reference, "## [" + std::string(section.name) + "]\n" + std::string(section.meaning) + "\n"));
     const std::string table = reference_table(section.name);
@@ -191,7 +192,7 @@ TEST_CASE("the boards that come with the project load and are what they say") {
     CHECK(board->eye.acceptance_rad == doctest::Approx(c.acceptance_deg * deg));
     // The read noise is given to three digits, and rounding adds a little.
     CHECK(board->noise_sigma() == doctest::Approx(c.sigma).epsilon(3e-3));
-    CHECK(board->reconstruction.constraint == recon::ConstraintKind::box);
+    CHECK(board->objective.constraint == recon::ConstraintKind::box);
     CHECK(fs::exists(boards / c.name / "README.md"));
     const auto same = load_board(boards / c.name / "board.toml");
     REQUIRE(same.has_value());

@@ -19,8 +19,8 @@ namespace {
 
 Board some_board() {
   Board board = test::board_8x8();
-  board.reconstruction.basis = BasisKind::tv;
-  board.reconstruction.iterations = 17;
+  board.objective.basis = BasisKind::tv;
+  board.plan.iterations = 17;
   return board;
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("the board's own point comes first and is among those of its curve, qu
       SweepOptions options;
       options.quick = quick;
       Board board = some_board();
-      board.reconstruction.solver = solver;
+      board.plan.solver = solver;
       const SweepPlan plan = plan_sweep(board, options, 64).value();
       const PlannedCurve& first = plan.curves.front();
       CHECK(first.curve.solver == solver);
@@ -106,7 +106,7 @@ TEST_CASE("what can go on from the last frame does so with and without motion, e
   int warm = 0;
   for (const PlannedCurve& planned : plan_of({}).curves) {
     const Board board = with_curve(some_board(), planned.curve);
-    CHECK(board.reconstruction.warm_start == (planned.curve.motion != Motion::none));
+    CHECK(board.plan.warm_start == (planned.curve.motion != Motion::none));
     CHECK((planned.curve.motion == Motion::none || planned.curve.solver == SolverKind::pdhg));
     if (planned.curve.motion != Motion::none) ++warm;
   }
@@ -116,7 +116,7 @@ TEST_CASE("what can go on from the last frame does so with and without motion, e
 TEST_CASE("a thread a core is one curve of its own, on a machine that has cores to share") {
   int shared = 0;
   for (const PlannedCurve& planned : plan_of({}).curves) {
-    CHECK(with_curve(some_board(), planned.curve).reconstruction.threads == planned.curve.threads);
+    CHECK(with_curve(some_board(), planned.curve).plan.threads == planned.curve.threads);
     if (planned.curve.threads == 1) continue;
     ++shared;
     CHECK(title(planned.curve).find("threads") != std::string::npos);

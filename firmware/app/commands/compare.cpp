@@ -52,7 +52,7 @@ Result<void> check(const CompareRequest& o) {
 Result<void> run_compare(const CompareRequest& o, Session& session) {
   TRY(check(o));
   const Board board = TRY(load_board(o.board));
-  static_cast<void>(TRY(contenders(o, board.reconstruction.constraint)));
+  static_cast<void>(TRY(contenders(o, board.objective.constraint)));
   TRY(try_output(o.sheet));
   TRY(try_output(o.csv));
   auto compared = compare(board, o, session.clock(), session.progress());

@@ -41,7 +41,7 @@ Result<void> try_folder(const std::string& folder) {
 
 /// A sweep that was cut short does not push a whole one of the same eye, machine and build aside.
 void store(const Board& board, Sweep& sweep) {
-  const std::filesystem::path folder = board.folder / ".cache";
+  const std::string folder = board.cache();
   const PointsKey key{sweep.response_hash, sweep.machine, sweep.constraint, sweep.lo, sweep.hi};
   if (!sweep.cut_short.empty()) {
     const auto before = load_points(folder, key);

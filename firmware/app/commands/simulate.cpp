@@ -63,7 +63,7 @@ struct Effect {
 };
 
 std::vector<Effect> effects_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
-  const SensorSettings& s = board.sensor;
+  const hal::SensorSettings& s = board.sensor;
   const bool sensor = !o.noise_free || o.codes;
   const bool away = scene.distance_mm && *scene.distance_mm != board.object.distance_mm;
   return {

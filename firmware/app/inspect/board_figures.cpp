@@ -9,16 +9,21 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "calib/nominal.hpp"
 #include "firmware/app/inspect/operator_lines.hpp"
 #include "firmware/eye/dead_ommatidia.hpp"
-#include "firmware/eye/settings/reconstruction_names.hpp"
+#include "firmware/eye/ready_eye.hpp"
+#include "firmware/eye/settings/setting.hpp"
 #include "firmware/files/factor_cache.hpp"
 #include "firmware/text/number_text.hpp"
-#include "recon/lambda_rule.hpp"
+#include "hal/try.hpp"
+#include "recon/option_names.hpp"
 #include "recon/setup/penalty_rule.hpp"
 #include "recon/setup/quantised_response.hpp"
 
@@ -32,86 +37,92 @@ double degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
 }
 
+Json json_of(const SettingValue& value) {
+  const auto convert = [](const auto& plain) -> Json {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(plain)>, ForeignValue>) {
+      return plain.kind;
+    } else {
+      return plain;
+    }
+  };
+  return std::visit(convert, value);
+}
+
+/// Every setting of a section as the board has it; null where a rule decides.
+Json settings_json(const Board& board, std::string_view section) {
+  Json object = Json::object();
+  for (const Setting& setting : settings()) {
+    if (setting.section != section) continue;
+    const std::optional<SettingValue> value = setting.show(board);
+    const std::string figure(setting.figure.empty() ? setting.key : setting.figure);
+    if (setting.type != SettingType::real_pair) {
+      object[figure] = value ? json_of(*value) : Json();
+      continue;
+    }
+    const std::size_t between = figure.find(' ');
+    object[figure.substr(0, between)] = value ? json_of(*value)[0] : Json();
+    object[figure.substr(between + 1)] = value ? json_of(*value)[1] : Json();
+  }
+  return object;
+}
+
 void add_eye(const Board& board, FigureList& figures) {
   const hal::EyeGeometry& eye = board.eye;
   const hal::ObjectPlane& object = board.object;
-  const double between = degrees(eye.interommatidial_rad), acceptance = degrees(eye.acceptance_rad);
   figures.add("board", "board", board.name, board.name);
   figures.add("description", "description", board.description, board.description);
   figures.add("eye", "eye",
               fmt::format("{}x{} ommatidia, {} lattice, {:.6g} deg apart, {:.6g} deg acceptance", eye.rows, eye.columns,
-                          hal::name(eye.lattice), between, acceptance),
-              {{"rows", eye.rows},
-               {"columns", eye.columns},
-               {"lattice", hal::name(eye.lattice)},
-               {"interommatidial_deg", between},
-               {"acceptance_deg", acceptance},
-               {"radius_mm", eye.radius_mm},
-               {"lens_height_mm", eye.lens_height_mm}});
+                          hal::name(eye.lattice), degrees(eye.interommatidial_rad), degrees(eye.acceptance_rad)),
+              settings_json(board, "eye"));
   figures.add("object", "object",
               fmt::format("{}x{} pixels on {}x{} mm at {} mm", object.rows, object.cols, object.height_mm,
                           object.width_mm, object.distance_mm),
-              {{"rows", object.rows},
-               {"cols", object.cols},
-               {"width_mm", object.width_mm},
-               {"height_mm", object.height_mm},
-               {"distance_mm", object.distance_mm}});
+              settings_json(board, "object"));
 }
 
 void add_sensor(const Board& board, FigureList& figures) {
-  const SensorSettings& sensor = board.sensor;
+  const hal::SensorSettings& sensor = board.sensor;
   figures.add("sensor", "sensor",
               fmt::format("{} bits, full scale {:.6g} white pixels, read noise {:.4g} LSB, {} dead", sensor.bits,
                           sensor.full_scale, sensor.read_noise_lsb, sensor.dead.size()),
-              {{"bits", sensor.bits},
-               {"full_scale", sensor.full_scale},
-               {"read_noise_lsb", sensor.read_noise_lsb},
-               {"dark_level_lsb", sensor.dark_level_lsb},
-               {"dead", sensor.dead}});
+              settings_json(board, "sensor"));
   figures.add("lsb", "LSB", significant(sensor.lsb(), 6) + " white pixels", sensor.lsb());
   figures.add("noise_sigma", "noise of a sample", significant(board.noise_sigma(), 6) + " white pixels",
               board.noise_sigma());
   figures.add(
       "source", "source",
       fmt::format("{} {}, {:.6g} frames a second", board.source.kind, board.source.serial, board.source.frame_rate_hz),
-      {{"kind", board.source.kind},
-       {"serial", board.source.serial},
-       {"frame_rate_hz", board.source.frame_rate_hz},
-       {"fifo_frames", board.source.fifo_frames}});
+      settings_json(board, "source"));
 }
 
 void add_solver(const Board& board, FigureList& figures) {
-  const ReconstructionSettings& r = board.reconstruction;
-  const bool box = r.constraint == recon::ConstraintKind::box;
+  const recon::Objective& objective = board.objective;
+  const std::string constraint = objective.constraint == recon::ConstraintKind::box
+                                     ? fmt::format("box [{}, {}]", objective.lo, objective.hi)
+                                     : std::string(name(objective.constraint));
   figures.add("reconstruction", "reconstruction",
-              fmt::format("{}, {} basis, {}, {} iterations", name(r.solver), name(r.basis),
-                          box ? fmt::format("box [{}, {}]", r.box_lo, r.box_hi) : std::string(name(r.constraint)),
-                          r.iterations),
-              {{"solver", name(r.solver)},
-               {"basis", name(r.basis)},
-               {"constraint", name(r.constraint)},
-               {"lo", box ? Json(r.box_lo) : Json()},
-               {"hi", box ? Json(r.box_hi) : Json()},
-               {"iterations", r.iterations},
-               {"relaxation", r.relaxation}});
+              fmt::format("{}, {} basis, {}, {} iterations", name(board.plan.solver), name(objective.basis), constraint,
+                          board.plan.iterations),
+              settings_json(board, "reconstruction"));
 }
 
 /// Returns what the board's factor has to be.
 Result<recon::Factor> add_rules(const Board& board, const recon::Response& a, FigureList& figures) {
-  const ReconstructionSettings& r = board.reconstruction;
-  const auto by_rule =
-      recon::lambda_by_rule(a, board.object.rows, board.object.cols, r.solver, r.basis, board.noise_sigma());
-  if (!by_rule) return tl::unexpected(by_rule.error());
-  const double lambda = r.lambda.value_or(*by_rule);
-  recon::Plan plan;
-  plan.solver = r.solver;
-  plan.rho = r.rho.value_or(0.0);
-  const recon::Objective objective{r.basis, r.constraint, r.box_lo, r.box_hi, lambda};
-  const double rho = recon::resolve_rho(a, board.object.rows, board.object.cols, objective, plan);
-  figures.add("lambda_by_rule", "lambda by rule", significant(*by_rule, 5), *by_rule);
-  figures.add("lambda", "lambda in use", significant(lambda, 5) + (r.lambda ? " (the board's)" : " (by rule)"), lambda);
-  figures.add("rho", "rho in use", significant(rho, 5) + (r.rho ? " (the board's)" : " (by rule)"), rho);
-  return recon::Reconstructor::wanted_factor(a, board.object.rows, board.object.cols, objective, plan);
+  const int rows = board.object.rows, cols = board.object.cols;
+  const auto chosen = [&](std::optional<double> by_hand) {
+    return choose_lambda(a, rows, cols, board.plan.solver, board.objective.basis, by_hand, board.noise_sigma());
+  };
+  const double by_rule = TRY(chosen(std::nullopt)).value;
+  const LambdaChoice lambda = TRY(chosen(board.lambda));
+  recon::Objective objective = board.objective;
+  objective.lambda = lambda.value;
+  const double rho = recon::resolve_rho(a, rows, cols, objective, board.plan);
+  const auto whose = [](bool by_the_rule) { return by_the_rule ? " (by rule)" : " (the board's)"; };
+  figures.add("lambda_by_rule", "lambda by rule", significant(by_rule, 5), by_rule);
+  figures.add("lambda", "lambda in use", significant(lambda.value, 5) + whose(lambda.by_rule), lambda.value);
+  figures.add("rho", "rho in use", significant(rho, 5) + whose(!(board.plan.rho > 0.0)), rho);
+  return recon::Reconstructor::wanted_factor(a, rows, cols, objective, board.plan);
 }
 
 std::vector<fs::path> factor_files(const fs::path& folder) {
@@ -138,7 +149,7 @@ std::string factor_text(const std::string& state) {
 }
 
 void add_cache(const Board& board, const FactorKey& key, FigureList& figures) {
-  const fs::path folder = board.folder / ".cache";
+  const fs::path folder = board.cache();
   Json files = Json::array();
   std::uint64_t total = 0;
   for (const fs::path& file : factor_files(folder)) {
@@ -160,7 +171,7 @@ Result<void> add_board_figures(const Board& board, const recon::Progress& progre
   add_solver(board, figures);
   auto nominal = calib::nominal_response(board.eye, board.object, progress);
   if (!nominal) return tl::unexpected(std::move(nominal.error()));
-  const std::optional<recon::OperatorKind> op = board.reconstruction.op;
+  const std::optional<recon::OperatorKind> op = board.plan.op;
   const recon::Response a =
       recon::quantised(without_dead(*nominal, board.sensor.dead), op.value_or(recon::OperatorKind::csr));
   const auto seeing = static_cast<int>(a.seeing_rows().size());

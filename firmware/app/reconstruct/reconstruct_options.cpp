@@ -8,29 +8,29 @@
 #include <vector>
 
 #include "firmware/app/reconstruct/solver_options.hpp"
-#include "firmware/eye/settings/reconstruction_names.hpp"
+#include "recon/option_names.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
 namespace {
 
 template <class Kind>
-std::vector<std::string_view> names_in(std::span<const Named<Kind>> named) {
+std::vector<std::string_view> names_in(std::span<const recon::Named<Kind>> named) {
   std::vector<std::string_view> names;
-  for (const Named<Kind>& each : named) names.push_back(each.name);
+  for (const recon::Named<Kind>& each : named) names.push_back(each.name);
   return names;
 }
 
 template <class Kind>
-Kind kind_named(std::span<const Named<Kind>> named, std::string_view name) {
-  for (const Named<Kind>& each : named) {
+Kind kind_named(std::span<const recon::Named<Kind>> named, std::string_view name) {
+  for (const recon::Named<Kind>& each : named) {
     if (each.name == name) return each.kind;
   }
   return named.front().kind;  // the option's check has let only these names through
 }
 
 std::vector<std::string_view> operator_words() {
-  std::vector<std::string_view> words = names_in(operator_names());
+  std::vector<std::string_view> words = names_in(recon::operator_names());
   words.insert(words.begin(), "auto");
   return words;
 }
@@ -56,12 +56,12 @@ void add_files(OptionList& options, ReconstructOptions& o) {
 }
 
 void add_problem(OptionList& options, ReconstructOptions& o) {
-  options.add("--solver", o.solver, choices(names_in(solver_names()), "admm"))
+  options.add("--solver", o.solver, choices(names_in(recon::solver_names()), "admm"))
       .type("NAME")
-      .where(one_of(names_in(solver_names())));
-  options.add("--basis", o.basis, "where the picture is sparse: " + choices(names_in(basis_names()), "identity"))
+      .where(one_of(names_in(recon::solver_names())));
+  options.add("--basis", o.basis, "where the picture is sparse: " + choices(names_in(recon::basis_names()), "identity"))
       .type("NAME")
-      .where(one_of(names_in(basis_names())));
+      .where(one_of(names_in(recon::basis_names())));
   options.flag("--nonnegative", o.nonnegative, "constraint x >= 0");
   options.add("--box", o.box, "constraint LO <= x <= HI, such as 0,1")
       .type("LO,HI")
@@ -121,7 +121,7 @@ void add_plan(OptionList& options, ReconstructOptions& o) {
   options
       .add("--operator", o.op,
            "how A is applied: auto (default: the quickest that keeps every digit), " +
-               choices(names_in(operator_names())) + ", which round the response")
+               choices(names_in(recon::operator_names())) + ", which round the response")
       .type("NAME")
       .where(one_of(operator_words()));
   options.add("--threads", o.threads, "that share a frame's work (default 1); the picture is the same")
@@ -191,7 +191,7 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
   if (!checked) return tl::unexpected(checked.error());
   ProblemStatement problem;
   problem.size = *picture_size_from(o.size);
-  problem.objective.basis = kind_named(basis_names(), o.basis);
+  problem.objective.basis = kind_named(recon::basis_names(), o.basis);
   if (o.nonnegative) problem.objective.constraint = recon::ConstraintKind::nonnegative;
   if (const auto box = interval_from(o.box)) {
     problem.objective.constraint = recon::ConstraintKind::box;
@@ -199,10 +199,10 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
     problem.objective.hi = box->hi;
   }
   problem.objective.epsilon = o.epsilon;
-  problem.plan.solver = kind_named(solver_names(), o.solver);
+  problem.plan.solver = kind_named(recon::solver_names(), o.solver);
   if (o.as_published) problem.plan.solver = recon::SolverKind::adm_as_published;
   problem.plan.warm_start = o.start == "warm";
-  if (o.op != "auto") problem.plan.op = kind_named(operator_names(), o.op);
+  if (o.op != "auto") problem.plan.op = kind_named(recon::operator_names(), o.op);
   problem.plan.threads = o.threads;
   problem.plan.rank = o.rank.value_or(0);
   problem.plan.l1_reweighting = o.reweight.value_or(0.0);

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
-#include "firmware/eye/settings/reconstruction_names.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
+#include "recon/option_names.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -1,7 +1,7 @@
 #include <string>
 
 #include "firmware/app/run/run_report.hpp"
-#include "firmware/eye/settings/reconstruction_names.hpp"
+#include "recon/option_names.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -5,10 +5,10 @@
 #include <string_view>
 
 #include "firmware/app/run/run_report.hpp"
-#include "firmware/eye/settings/reconstruction_names.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
 #include "firmware/text/visible_text.hpp"
+#include "recon/option_names.hpp"
 
 namespace compueye::firmware {
 namespace {

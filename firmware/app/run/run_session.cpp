@@ -70,6 +70,7 @@ class BoardRun {
 
  private:
   Result<void> prepare();
+  void overrule_board();
   Result<void> make_eye();
   Result<void> choose_eye(const recon::Progress& ask);
   [[nodiscard]] ReadyEye& eye() { return ladder_.eyes.front(); }
@@ -113,9 +114,18 @@ void BoardRun::note(const std::string& sentence) {
   session_.note(sentence);
 }
 
+/// The command line has the last word.
+void BoardRun::overrule_board() {
+  if (options_.distance_mm) board_.object.distance_mm = *options_.distance_mm;
+  if (options_.iterations) board_.plan.iterations = static_cast<int>(*options_.iterations);
+  if (options_.threads) board_.plan.threads = static_cast<int>(*options_.threads);
+  if (options_.sigma) board_.sigma = options_.sigma;
+  if (options_.sigma || options_.lambda) board_.lambda = options_.lambda;
+}
+
 Result<void> BoardRun::prepare() {
   board_ = TRY(load_board(options_.board));
-  if (options_.distance_mm) board_.object.distance_mm = *options_.distance_mm;
+  overrule_board();
   TRY(try_outputs(options_));
   if (!options_.record.empty()) TRY(check_new_recording(options_.record));
   TRY(need(options_.sheet.empty() || knows_scene(), "--sheet",
@@ -149,15 +159,12 @@ Result<void> BoardRun::make_eye() {
 /// From stored points where a deadline asks for them; otherwise, or when there are none that fit, what the board says.
 Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
   const LivingResponse living = TRY(living_response(board_, ask));
-  EyeRequest request{std::nullopt, options_.lambda, options_.sigma, std::nullopt, board_.folder / ".cache"};
-  if (options_.threads) request.threads = static_cast<int>(*options_.threads);
   // Iterations, threads or lambda by hand say what to run; nothing that was measured goes with them.
   if (options_.deadline_ms && !options_.iterations && !options_.threads && !options_.lambda) {
-    const auto points = load_points(request.cache, points_key(board_, living.response));
+    const auto points = load_points(board_.cache(), points_key(board_, living.response));
     if (points) {
-      const PointChoice choice =
-          choose_points(*points, options_.sigma.value_or(board_.noise_sigma()), *options_.deadline_ms, period_ms());
-      ladder_ = TRY(make_ladder(board_, living, *points, choice, request, ask));
+      const PointChoice choice = choose_points(*points, board_.noise_sigma(), *options_.deadline_ms, period_ms());
+      ladder_ = TRY(make_ladder(board_, living, *points, choice, board_.cache(), ask));
       report_.ladder = ladder_report(choice, *points);
       choice_notes_.push_back(report_.ladder->sentence);
       return {};
@@ -167,8 +174,7 @@ Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
                     "measures them: {}",
                     options_.board, points.error().text()));
   }
-  if (options_.iterations) request.iterations = static_cast<int>(*options_.iterations);
-  ladder_.eyes.push_back(TRY(ReadyEye::make(board_, living, request, ask)));
+  ladder_.eyes.push_back(TRY(ReadyEye::make(board_, living, board_.cache(), ask)));
   return {};
 }
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/eye/settings/reconstruction_names.hpp"
 #include "firmware/sinks/contact_sheet.hpp"
 #include "firmware/text/number_text.hpp"
+#include "recon/option_names.hpp"
 
 namespace compueye::firmware {
 namespace {

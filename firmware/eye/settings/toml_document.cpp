@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "firmware/text/visible_text.hpp"
+#include "hal/try.hpp"
 
 // Debian's shared library is built with exceptions, and toml++ keeps the two flavours apart by inline namespace; so
 // this one file compiles the header-only flavour without them.
@@ -50,7 +51,7 @@ std::string_view kind_of(toml::node_type type) noexcept {
   }
 }
 
-TomlValue list_value(const toml::array& list) {
+SettingValue list_value(const toml::array& list) {
   std::vector<std::int64_t> whole;
   std::vector<double> real;
   for (const toml::node& item : list) {
@@ -62,7 +63,7 @@ TomlValue list_value(const toml::array& list) {
   return real;
 }
 
-TomlValue value_of(const toml::node& node) {
+SettingValue value_of(const toml::node& node) {
   if (const auto* integer = node.as_integer()) return integer->get();
   if (const auto* real = node.as_floating_point()) return real->get();
   if (const auto* boolean = node.as_boolean()) return boolean->get();
@@ -103,7 +104,7 @@ std::string parser_words(std::string_view description) {
 }  // namespace
 
 hal::Result<TomlDocument> parse_toml(std::string_view text, const std::string& file) {
-  if (auto shallow = refuse_deep_nesting(text, file); !shallow) return tl::unexpected(shallow.error());
+  TRY(refuse_deep_nesting(text, file));
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
     const toml::source_region& at = parsed.error().source();

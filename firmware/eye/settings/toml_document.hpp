@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware/eye/settings/toml_value.hpp"
+#include "firmware/eye/settings/setting.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
@@ -18,7 +18,7 @@ struct TomlSection {
 struct TomlEntry {
   std::string section;
   std::string key;
-  TomlValue value;
+  SettingValue value;
   int line = 0;
 };
 
@@ -30,5 +30,10 @@ struct TomlDocument {
 
 /// Errors: bad_format with "file:line" as place; the sentence names the column and what the parser met.
 [[nodiscard]] hal::Result<TomlDocument> parse_toml(std::string_view text, const std::string& file);
+
+/// Every key of the document is known, is of the right type and in range, and no required key is missing. One fault is
+/// reported: the first unknown section, else the first bad line, else the first missing key (last, so that a misspelt
+/// key is told as that).
+[[nodiscard]] hal::Result<void> check_document(const TomlDocument& document, const std::string& file);
 
 }  // namespace compueye::firmware

@@ -42,9 +42,9 @@ TEST_CASE("the whole runtime, with the simulated eye and the real solver, does n
   REQUIRE(board.has_value());
   board->sensor.dead = {5, 9};
   for (const recon::SolverKind solver_kind : {recon::SolverKind::admm, recon::SolverKind::tikhonov}) {
-    board->reconstruction.solver = solver_kind;
-    if (solver_kind == recon::SolverKind::tikhonov) board->reconstruction.constraint = recon::ConstraintKind::none;
-    board->reconstruction.iterations = 20;
+    board->plan.solver = solver_kind;
+    if (solver_kind == recon::SolverKind::tikhonov) board->objective.constraint = recon::ConstraintKind::none;
+    board->plan.iterations = 20;
     const auto eye = ReadyEye::make(*board, {}, {});
     REQUIRE_MESSAGE(eye.has_value(), eye.error().text());
     hal::MonotonicClock clock;

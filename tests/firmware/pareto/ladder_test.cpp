@@ -50,11 +50,10 @@ TEST_CASE("a ladder has an eye a curve, and a frame of a rung has the bits of th
     solver.use(rung);
     const recon::FrameInfo info = solver.solve(y, weights, x);
     CHECK(solver.rung_of(info.point) == rung);
-    EyeRequest request;
-    request.iterations = ladder.rungs[rung].point.iterations;
     Board one = board;
-    one.reconstruction.basis = ladder.rungs[rung].point.basis;
-    auto eye = ReadyEye::make(one, *living, request, {});
+    one.plan.iterations = ladder.rungs[rung].point.iterations;
+    one.objective.basis = ladder.rungs[rung].point.basis;
+    auto eye = ReadyEye::make(one, *living, {}, {});
     REQUIRE(eye.has_value());
     ReconstructorSolver single(eye->reconstructor());
     static_cast<void>(single.solve(y, weights, alone));

@@ -1,4 +1,4 @@
-#include "firmware/eye/board_consistency.hpp"
+#include "firmware/eye/board.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <numbers>
 #include <utility>
+
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -33,10 +35,10 @@ hal::Result<void> check_lattice_keys(const Board& board) {
   };
   const bool flat = lattice == Lattice::plane;
   const bool pitched = flat || lattice == Lattice::cylinder;
-  return needs(!flat, "interommatidial_angle_deg")
-      .and_then([&] { return needs(pitched, "pitch_mm"); })
-      .and_then([&] { return excludes(flat, "interommatidial_angle_deg"); })
-      .and_then([&] { return excludes(!pitched, "pitch_mm"); });
+  TRY(needs(!flat, "interommatidial_angle_deg"));
+  TRY(needs(pitched, "pitch_mm"));
+  TRY(excludes(flat, "interommatidial_angle_deg"));
+  return excludes(!pitched, "pitch_mm");
 }
 
 hal::Result<void> check_sizes(const Board& board) {
@@ -80,7 +82,7 @@ hal::Result<void> check_span(const Board& board) {
 }
 
 hal::Result<void> check_sensor(const Board& board) {
-  const SensorSettings& sensor = board.sensor;
+  const hal::SensorSettings& sensor = board.sensor;
   const int channels = board.eye.ommatidia();
   if (!sensor.dead.empty() && sensor.dead.back() >= channels) {
     return hal::fail(ErrorCode::out_of_range, board.place("sensor", "dead"),
@@ -104,12 +106,12 @@ hal::Result<void> check_sensor(const Board& board) {
 }
 
 hal::Result<void> check_reconstruction(const Board& board) {
-  if (board.reconstruction.warm_start && board.reconstruction.solver != recon::SolverKind::pdhg) {
+  if (board.plan.warm_start && board.plan.solver != recon::SolverKind::pdhg) {
     return hal::fail(ErrorCode::mismatch, board.place("reconstruction", "start"),
                      "start = \"warm\" is given in [reconstruction] without solver = \"pdhg\", which alone keeps "
                      "anything from frame to frame; set that or remove the line");
   }
-  const recon::ConstraintKind constraint = board.reconstruction.constraint;
+  const recon::ConstraintKind constraint = board.objective.constraint;
   if (!board.states("reconstruction", "box") || constraint == recon::ConstraintKind::box) return {};
   return hal::fail(ErrorCode::mismatch, board.place("reconstruction", "box"),
                    "box is given in [reconstruction] without constraint = \"box\"; set that or remove the line");
@@ -117,14 +119,14 @@ hal::Result<void> check_reconstruction(const Board& board) {
 
 }  // namespace
 
-hal::Result<void> check_consistency(const Board& board) {
-  return check_lattice_keys(board)
-      .and_then([&] { return check_sizes(board); })
-      .and_then([&] { return check_span(board); })
-      .and_then([&] { return with_line(board, board.eye.validate()); })
-      .and_then([&] { return with_line(board, board.object.validate()); })
-      .and_then([&] { return check_sensor(board); })
-      .and_then([&] { return check_reconstruction(board); });
+hal::Result<void> check_board(const Board& board) {
+  TRY(check_lattice_keys(board));
+  TRY(check_sizes(board));
+  TRY(check_span(board));
+  TRY(with_line(board, board.eye.validate()));
+  TRY(with_line(board, board.object.validate()));
+  TRY(check_sensor(board));
+  return check_reconstruction(board);
 }
 
 }  // namespace compueye::firmware

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "firmware/eye/board.hpp"
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// A value of a kind that no setting of ours has; `kind` says it in words ("a date", "a table").
+struct ForeignValue {
+  std::string kind;
+  bool operator==(const ForeignValue&) const = default;
+};
+
+/// What a setting is set to. Lists hold numbers only; one with a fraction anywhere is a list of doubles.
+using SettingValue =
+    std::variant<std::int64_t, double, bool, std::string, std::vector<std::int64_t>, std::vector<double>, ForeignValue>;
+
+/// The value as an error sentence quotes it, short and on one line: 8, nan, "fisheye", [0, 1].
+[[nodiscard]] std::string quoted(const SettingValue& value);
+
+enum class SettingType {
+  identifier,  ///< text of letters, digits, '.', '_', '-', 1 to 64 characters
+  text,        ///< one line of at most 1000 characters
+  choice,      ///< one of Setting::choices
+  whole,       ///< a whole number in Setting::range
+  real,        ///< a finite number in Setting::range; a whole number will do
+  whole_list,  ///< distinct whole numbers in Setting::range
+  real_pair,   ///< two numbers in Setting::range, the first below the second; "LO,HI" on a command line
+};
+
+/// Allowed numbers; an open end is not itself allowed.
+struct Range {
+  double least = 0.0;
+  double most = 0.0;
+  bool open_least = false;
+  bool open_most = false;
+
+  /// False for NaN.
+  [[nodiscard]] bool holds(double value) const noexcept;
+  /// "from 1 to 4096", "more than 0 and at most 120".
+  [[nodiscard]] std::string words() const;
+};
+
+/// A section of board.toml.
+struct Section {
+  std::string_view name;
+  std::string_view meaning;
+};
+
+/// A setting that board.toml, a command line or both know: the single source for loading, checking, suggesting, showing
+/// and documenting it. To add one, add its row to eye_settings.cpp or reconstruction_settings.cpp and the line that
+/// the test of docs/board-file.md prints.
+struct Setting {
+  std::string_view section = {};     ///< of board.toml; empty: only commands have it
+  std::string_view key;              ///< in its section
+  std::string_view option = {};      ///< "--iterations"; empty: only board.toml has it
+  std::string_view commands = {};    ///< that take the option, "run compare reconstruct"
+  std::string_view value_name = {};  ///< of the option's value in help, "K"
+  SettingType type = SettingType::text;
+  Range range = {};
+  std::vector<std::string_view> choices = {};
+  bool required = false;                      ///< by board.toml
+  std::optional<SettingValue> fallback = {};  ///< absent and not required: the meaning says what happens
+  std::string_view meaning;
+  std::string_view figure = {};  ///< what `inspect --json` calls it; empty: the key. Of a pair "lo hi"
+  void (*store)(Board&, const SettingValue&) = nullptr;         ///< only ever given a value that passed check_value()
+  std::optional<SettingValue> (*show)(const Board&) = nullptr;  ///< nothing: left to its rule
+  /// What else a value from a command line changes, because it is a person's last word.
+  void (*overrule)(Board&) = nullptr;
+
+  /// What a good value is, to end "expected ...": "a whole number from 1 to 4096".
+  [[nodiscard]] std::string expectation() const;
+};
+
+[[nodiscard]] std::span<const Section> sections();
+/// Every row, by section; those without one last.
+[[nodiscard]] std::span<const Setting> settings();
+/// nullptr when board.toml has no such key.
+[[nodiscard]] const Setting* find_setting(std::string_view section, std::string_view key) noexcept;
+/// Those whose option the command takes.
+[[nodiscard]] std::vector<const Setting*> settings_for(std::string_view command);
+
+/// One value against its row. Errors have an empty place: bad_format (type), out_of_range, not_found (choice).
+[[nodiscard]] hal::Result<void> check_value(const Setting& setting, const SettingValue& value);
+
+/// What a person typed after the option. Error usage at `place`: "is 'x', expected ...".
+[[nodiscard]] hal::Result<SettingValue> value_from(const Setting& setting, std::string_view text,
+                                                   std::string_view place);
+/// Stores it, and Board::place() names `place` from then on. Errors: those of value_from().
+[[nodiscard]] hal::Result<void> set(Board& board, const Setting& setting, std::string_view text,
+                                    std::string_view place);
+
+/// The rows of the section's table in docs/board-file.md.
+[[nodiscard]] std::string reference_table(std::string_view section);
+
+/// The parts of settings(), a file each.
+[[nodiscard]] std::vector<Setting> eye_settings();             // [board] [eye] [object] [sensor]
+[[nodiscard]] std::vector<Setting> reconstruction_settings();  // [reconstruction], and what only commands have
+[[nodiscard]] std::vector<Setting> source_settings();          // [source] [scene]
+
+}  // namespace compueye::firmware
