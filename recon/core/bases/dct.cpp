@@ -2,6 +2,7 @@
 
 #include "recon/core/bases/strip.hpp"
 #include "recon/core/bases/strip_product.hpp"
+#include "recon/core/parts/multiversion.hpp"
 
 namespace compueye::recon::core {
 namespace {
@@ -233,13 +234,13 @@ COMPUEYE_INLINE void transform_strips(const Pass<T>& pass, const Dct2d<T>& psi, 
     if (pass.columns) {
       columns_to_strip(in + at, rows, cols, width, strip);
     } else {
-      some_rows_to_strip(in + at, width, cols, cols, strip);
+      rows_to_strip(in + at, width, cols, cols, strip);
     }
     transform_strip(pass, table, strip, result, work, s * size);
     if (pass.columns) {
       strip_to_columns(result, rows, cols, width, out + at);
     } else {
-      strip_to_some_rows(result, width, cols, cols, out + at);
+      strip_to_rows(result, width, cols, cols, out + at);
     }
   }
 }
@@ -248,7 +249,7 @@ COMPUEYE_MULTIVERSION void do_strips(const Pass<float>& pass, const Dct2d<float>
                                      float* scratch, std::size_t begin, std::size_t end) noexcept {
   transform_strips(pass, psi, in, out, scratch, begin, end);
 }
-// Double is for set-up and checks: clones of it would take the compiler longer than the rest of recon/core.
+// Double is for set-up and checks: clones of the products by matrices, which most of the time goes into, are enough.
 void do_strips(const Pass<double>& pass, const Dct2d<double>& psi, const double* in, double* out, double* scratch,
                std::size_t begin, std::size_t end) noexcept {
   transform_strips(pass, psi, in, out, scratch, begin, end);

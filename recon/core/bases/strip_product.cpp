@@ -8,9 +8,9 @@ namespace {
 
 /// How many lanes of two outputs fit into a processor's registers: a Cortex-M has room for 32 single numbers.
 #if defined(COMPUEYE_CORTEX_M)
-inline constexpr std::size_t lanes_at_once = lanes / 2;
+constexpr std::size_t lanes_at_once = lanes / 2;
 #else
-inline constexpr std::size_t lanes_at_once = lanes;
+constexpr std::size_t lanes_at_once = lanes;
 #endif
 
 /// out[k * out_stride] = sum_r c[k * row_step + r * sample_step] in[r], for `n` outputs of `n` inputs, each a strip

@@ -1,6 +1,9 @@
 #include "recon/core/bases/wavelet.hpp"
 
+#include <cstring>
+
 #include "recon/core/bases/strip.hpp"
+#include "recon/core/parts/multiversion.hpp"
 
 namespace compueye::recon::core {
 namespace {
@@ -24,7 +27,7 @@ constexpr const Filter& filter_of(BasisKind kind) noexcept {
 
 /// One level down a strip of even length n: averages to the first half, details to the second.
 template <class T>
-COMPUEYE_INLINE void analyse(const Filter& filter, std::size_t n, const T* __restrict strip, T* __restrict out) {
+COMPUEYE_INLINE void analyse_strip(const Filter& filter, std::size_t n, const T* __restrict strip, T* __restrict out) {
   const std::size_t half = n / 2;
   for (std::size_t k = 0; k < half; ++k) {
     T low[lanes] = {}, high[lanes] = {};
@@ -45,9 +48,10 @@ COMPUEYE_INLINE void analyse(const Filter& filter, std::size_t n, const T* __res
   }
 }
 
-/// The transpose of analyse().
+/// The transpose of analyse_strip().
 template <class T>
-COMPUEYE_INLINE void synthesise(const Filter& filter, std::size_t n, const T* __restrict strip, T* __restrict out) {
+COMPUEYE_INLINE void synthesise_strip(const Filter& filter, std::size_t n, const T* __restrict strip,
+                                      T* __restrict out) {
   const std::size_t half = n / 2;
   for (std::size_t k = 0; k < n * lanes; ++k) out[k] = T(0);
   for (std::size_t k = 0; k < half; ++k) {
@@ -62,45 +66,45 @@ COMPUEYE_INLINE void synthesise(const Filter& filter, std::size_t n, const T* __
   }
 }
 
-template <class T>
-COMPUEYE_INLINE void copy(const T* in, T* out, std::size_t n) {
-  for (std::size_t k = 0; k < n; ++k) out[k] = in[k];
+COMPUEYE_MULTIVERSION void analyse(const Filter& filter, std::size_t n, const float* strip, float* out) noexcept {
+  analyse_strip(filter, n, strip, out);
+}
+COMPUEYE_MULTIVERSION void analyse(const Filter& filter, std::size_t n, const double* strip, double* out) noexcept {
+  analyse_strip(filter, n, strip, out);
+}
+COMPUEYE_MULTIVERSION void synthesise(const Filter& filter, std::size_t n, const float* strip, float* out) noexcept {
+  synthesise_strip(filter, n, strip, out);
+}
+COMPUEYE_MULTIVERSION void synthesise(const Filter& filter, std::size_t n, const double* strip, double* out) noexcept {
+  synthesise_strip(filter, n, strip, out);
 }
 
 template <class T>
-COMPUEYE_INLINE void forward_of(const WaveletShape& shape, const T* in, T* out, T* scratch) {
+void forward_of(const WaveletShape& shape, const T* in, T* out, T* scratch) {
   const Filter& filter = filter_of(shape.kind);
   std::size_t rows = shape.rows, cols = shape.cols;
-  if (in != out) copy(in, out, rows * cols);
+  if (in != out) std::memcpy(out, in, rows * cols * sizeof(T));
   for (int level = wavelet_levels(shape); level > 0; --level) {
-    along_columns(
-        rows, cols, shape.cols, out, out, scratch, [&](T * strip, T * result, T*) __attribute__((always_inline)) {
-          analyse(filter, rows, strip, result);
-        });
-    along_rows(
-        rows, cols, shape.cols, out, out, scratch, [&](T * strip, T * result, T*) __attribute__((always_inline)) {
-          analyse(filter, cols, strip, result);
-        });
+    along_columns(rows, cols, shape.cols, out, out, scratch,
+                  [&](T* strip, T* result, T*) { analyse(filter, rows, strip, result); });
+    along_rows(rows, cols, shape.cols, out, out, scratch,
+               [&](T* strip, T* result, T*) { analyse(filter, cols, strip, result); });
     rows /= 2;
     cols /= 2;
   }
 }
 
 template <class T>
-COMPUEYE_INLINE void inverse_of(const WaveletShape& shape, const T* in, T* out, T* scratch) {
+void inverse_of(const WaveletShape& shape, const T* in, T* out, T* scratch) {
   const Filter& filter = filter_of(shape.kind);
   const int levels = wavelet_levels(shape);
-  if (in != out) copy(in, out, shape.rows * shape.cols);
+  if (in != out) std::memcpy(out, in, shape.rows * shape.cols * sizeof(T));
   for (int level = levels; level > 0; --level) {
     const std::size_t rows = shape.rows >> (level - 1), cols = shape.cols >> (level - 1);
-    along_rows(
-        rows, cols, shape.cols, out, out, scratch, [&](T * strip, T * result, T*) __attribute__((always_inline)) {
-          synthesise(filter, cols, strip, result);
-        });
-    along_columns(
-        rows, cols, shape.cols, out, out, scratch, [&](T * strip, T * result, T*) __attribute__((always_inline)) {
-          synthesise(filter, rows, strip, result);
-        });
+    along_rows(rows, cols, shape.cols, out, out, scratch,
+               [&](T* strip, T* result, T*) { synthesise(filter, cols, strip, result); });
+    along_columns(rows, cols, shape.cols, out, out, scratch,
+                  [&](T* strip, T* result, T*) { synthesise(filter, rows, strip, result); });
   }
 }
 
@@ -118,20 +122,16 @@ int wavelet_levels(const WaveletShape& shape) noexcept {
   return levels;
 }
 
-COMPUEYE_MULTIVERSION void wavelet_forward(const WaveletShape& shape, const float* in, float* out,
-                                           float* scratch) noexcept {
+void wavelet_forward(const WaveletShape& shape, const float* in, float* out, float* scratch) noexcept {
   forward_of(shape, in, out, scratch);
 }
-COMPUEYE_MULTIVERSION void wavelet_forward(const WaveletShape& shape, const double* in, double* out,
-                                           double* scratch) noexcept {
+void wavelet_forward(const WaveletShape& shape, const double* in, double* out, double* scratch) noexcept {
   forward_of(shape, in, out, scratch);
 }
-COMPUEYE_MULTIVERSION void wavelet_inverse(const WaveletShape& shape, const float* in, float* out,
-                                           float* scratch) noexcept {
+void wavelet_inverse(const WaveletShape& shape, const float* in, float* out, float* scratch) noexcept {
   inverse_of(shape, in, out, scratch);
 }
-COMPUEYE_MULTIVERSION void wavelet_inverse(const WaveletShape& shape, const double* in, double* out,
-                                           double* scratch) noexcept {
+void wavelet_inverse(const WaveletShape& shape, const double* in, double* out, double* scratch) noexcept {
   inverse_of(shape, in, out, scratch);
 }
 

@@ -87,10 +87,10 @@ COMPUEYE_INLINE void flip_four(T* v) {
 
 template <std::size_t flip, class T, std::size_t lane_count>
 COMPUEYE_INLINE Lanes<T, lane_count> flipped(Lanes<T, lane_count> v) {
-  T lanes[lane_count];
-  __builtin_memcpy(lanes, &v, sizeof(v));
-  for (std::size_t l = 0; l < lane_count; l += 4) flip_four<flip>(lanes + l);
-  __builtin_memcpy(&v, lanes, sizeof(v));
+  T numbers[lane_count];
+  __builtin_memcpy(numbers, &v, sizeof(v));
+  for (std::size_t l = 0; l < lane_count; l += 4) flip_four<flip>(numbers + l);
+  __builtin_memcpy(&v, numbers, sizeof(v));
   return v;
 }
 
