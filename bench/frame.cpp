@@ -14,6 +14,7 @@
 #include "bench/timing.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
+#include "recon/aligned_workspace.hpp"
 #include "recon/core/bases/dct.hpp"
 #include "recon/core/operators/linear_operator.hpp"
 #include "recon/core/parts/proximal.hpp"
@@ -41,7 +42,7 @@ struct Part {
 /// What core::FrameProblem points at inside a Reconstructor, once more, for its parts to be called one by one.
 struct Operator {
   recon::OwnedTables<float> tables;
-  std::optional<bench::Workspace> memory;
+  std::optional<recon::AlignedWorkspace> memory;
 
   explicit Operator(const recon::Response& seeing, const bench::Eye& eye) {
     static_cast<void>(recon::fill_operator(seeing, eye.plane.rows, eye.plane.cols, std::nullopt, tables));
@@ -148,7 +149,7 @@ hal::Result<Part> measure_whole(const recon::Response& response, int rows, int c
     plan.iterations = longer == 1 ? many : 1;
     const auto solver = recon::Reconstructor::create(response, rows, cols, objective, plan, factor);
     if (!solver) return tl::unexpected(solver.error());
-    const bench::Workspace workspace(solver->required_bytes());
+    const recon::AlignedWorkspace workspace(solver->required_bytes());
     ms[longer] = bench::median_ms([&] { static_cast<void>(solver->solve(y, {}, workspace.span(), x)); });
   }
   return Part{"whole iteration", (ms[1] - ms[0]) / (many - 1), 0.0, 0.0};

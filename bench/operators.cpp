@@ -17,6 +17,7 @@
 #include "calib/plausible_response.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
+#include "recon/aligned_workspace.hpp"
 #include "recon/core/operators/linear_operator.hpp"
 #include "recon/setup/problem_tables.hpp"
 #include "recon/setup/quantised_response.hpp"
@@ -76,7 +77,7 @@ double taps_of(const recon::OwnedTables<float>& tables) {
 
 Timed time_ours(const std::string& name, const recon::OwnedTables<float>& tables, Vectors& v) {
   const core::LinearOperator<float>& op = tables.problem.a;
-  const bench::Workspace memory(op.scratch_size() * sizeof(float) + 64);
+  const recon::AlignedWorkspace memory(op.scratch_size() * sizeof(float) + 64);
   auto* scratch = reinterpret_cast<float*>(memory.span().data());
   Timed timed = time(
       name, [&] { core::forward(op, v.x.data(), v.y_out.data(), scratch); },

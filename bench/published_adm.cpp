@@ -12,6 +12,7 @@
 #include "calib/nominal.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
+#include "recon/aligned_workspace.hpp"
 #include "recon/metrics.hpp"
 #include "recon/reconstructor.hpp"
 #include "sim/random.hpp"
@@ -69,7 +70,7 @@ hal::Result<void> measure(const Way& way, std::size_t w, const recon::Response& 
   plan.precision = recon::Precision::f64;
   const auto solver = recon::Reconstructor::create(a, 16, 16, objective, plan);
   if (!solver) return tl::unexpected(solver.error());
-  const bench::Workspace workspace(solver->required_bytes());
+  const recon::AlignedWorkspace workspace(solver->required_bytes());
   std::vector<double> iterations;
   for (int s = 0; s < scenes; ++s) {
     const hal::Image truth = sparse_scene(s);

@@ -13,6 +13,7 @@
 #include "bench/timing.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
+#include "recon/aligned_workspace.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/reconstructor.hpp"
 #include "sim/built_in_scenes.hpp"
@@ -69,7 +70,7 @@ hal::Result<std::vector<float>> refactored(const recon::Response& response, cons
   auto reference =
       recon::Reconstructor::create(response.select_rows(rows), side, side, solver.objective(), solver.plan());
   if (!reference) return tl::unexpected(reference.error());
-  const bench::Workspace workspace(reference->required_bytes());
+  const recon::AlignedWorkspace workspace(reference->required_bytes());
   std::vector<float> x(static_cast<std::size_t>(reference->pixels()));
   static_cast<void>(reference->solve(samples, {}, workspace.span(), x));
   return x;
@@ -87,7 +88,7 @@ double relative_difference(const std::vector<float>& a, const std::vector<float>
 /// Times all shares by turns, so that whatever else the machine does meets them alike.
 hal::Result<void> time_frames(const recon::Response& response, const recon::Reconstructor& solver,
                               const std::vector<std::vector<float>>& samples, std::vector<Figures>& all) {
-  const bench::Workspace workspace(solver.required_bytes());
+  const recon::AlignedWorkspace workspace(solver.required_bytes());
   std::vector<float> x(static_cast<std::size_t>(solver.pixels()));
   static_cast<void>(solver.solve(samples.front(), {}, workspace.span(), x));  // warms the caches
   std::vector<std::vector<double>> times(all.size());
@@ -108,7 +109,7 @@ hal::Result<void> time_frames(const recon::Response& response, const recon::Reco
 hal::Result<double> error_of_picture(const recon::Response& response, const recon::Reconstructor& solver,
                                      const std::vector<float>& y, int missing) {
   const std::vector<float> weights = with_missing(response, missing);
-  const bench::Workspace workspace(solver.required_bytes());
+  const recon::AlignedWorkspace workspace(solver.required_bytes());
   std::vector<float> x(static_cast<std::size_t>(solver.pixels()));
   static_cast<void>(solver.solve(y, weights, workspace.span(), x));
   const auto reference = refactored(response, solver, y, weights);

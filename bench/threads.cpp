@@ -19,6 +19,7 @@
 #include "calib/plausible_response.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
+#include "recon/aligned_workspace.hpp"
 #include "recon/core/operators/linear_operator.hpp"
 #include "recon/option_names.hpp"
 #include "recon/reconstructor.hpp"
@@ -70,7 +71,7 @@ hal::Result<void> time_operator(const std::string& name, const recon::Response& 
   if (!filled) return filled;
   const core::LinearOperator<float>& op = tables.problem.a;
   tables.problem.employ(two.crew());  // more scratch than one
-  const bench::Workspace memory(op.scratch_size() * sizeof(float) + 64);
+  const recon::AlignedWorkspace memory(op.scratch_size() * sizeof(float) + 64);
   auto* scratch = reinterpret_cast<float*>(memory.span().data());
   std::vector<float> x = some_numbers(op.cols), y = some_numbers(op.rows), x_out(op.cols), y_out(op.rows);
   all.push_back(time_both("A, " + name, tables, two, [&] { core::forward(op, x.data(), y_out.data(), scratch); }));
@@ -104,7 +105,7 @@ hal::Result<double> iteration_us(const recon::Response& a, const bench::Eye& eye
     const auto solver = recon::Reconstructor::create(a, eye.plane.rows, eye.plane.cols, objective, plan, factor);
     if (!solver) return tl::unexpected(solver.error());
     factor = solver->factor();
-    const bench::Workspace workspace(solver->required_bytes());
+    const recon::AlignedWorkspace workspace(solver->required_bytes());
     ms[longer] = bench::median_ms([&] { static_cast<void>(solver->solve(y, {}, workspace.span(), x)); });
   }
   return 1e3 * (ms[1] - ms[0]) / (many - 1);

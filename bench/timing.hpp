@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <memory>
-#include <new>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -42,22 +40,6 @@ double median_ms(Work&& work, int repeats = 15, double total_ms = 500.0) {
   }
   return median(std::move(times));
 }
-
-/// 64-byte aligned memory for a solver.
-class Workspace {
- public:
-  explicit Workspace(std::size_t bytes)
-      : bytes_(bytes), memory_(static_cast<std::byte*>(::operator new(bytes, alignment))) {}
-  [[nodiscard]] std::span<std::byte> span() const { return {memory_.get(), bytes_}; }
-
- private:
-  static constexpr std::align_val_t alignment{64};
-  struct Release {
-    void operator()(std::byte* memory) const noexcept { ::operator delete(memory, alignment); }
-  };
-  std::size_t bytes_;
-  std::unique_ptr<std::byte, Release> memory_;
-};
 
 /// Whether --json was asked for; anything else on the command line is refused with exit code 2.
 enum class Output { table, json, refused };

@@ -15,6 +15,7 @@
 #include "calib/nominal.hpp"
 #include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
+#include "recon/aligned_workspace.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/reconstructor.hpp"
 #include "sim/built_in_scenes.hpp"
@@ -87,7 +88,7 @@ struct Line {
 /// Mean NMSE of a sequence; `each` gets every counted frame's.
 std::pair<double, int> mean_nmse(const recon::Reconstructor& solver, const std::vector<std::vector<float>>& samples,
                                  const std::vector<Picture>& truth, std::vector<double>& each) {
-  const bench::Workspace memory(solver.required_bytes());
+  const recon::AlignedWorkspace memory(solver.required_bytes());
   std::fill(memory.span().begin(), memory.span().end(), std::byte{0});
   Picture x(truth.front().size());
   double sum = 0.0;

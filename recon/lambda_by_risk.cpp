@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <new>
 #include <string>
 #include <utility>
+
+#include "recon/aligned_workspace.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -28,21 +29,6 @@ float sign_of(std::uint64_t channel) noexcept {
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
   return ((z ^ (z >> 31)) & 1U) != 0 ? 1.0F : -1.0F;
 }
-
-/// 64-byte aligned bytes for solve().
-class FrameMemory {
- public:
-  explicit FrameMemory(std::size_t bytes)
-      : bytes_(bytes), memory_(static_cast<std::byte*>(::operator new (bytes, std::align_val_t{64}))) {}
-  FrameMemory(const FrameMemory&) = delete;
-  FrameMemory& operator=(const FrameMemory&) = delete;
-  ~FrameMemory() { ::operator delete (memory_, std::align_val_t{64}); }
-  [[nodiscard]] std::span<std::byte> span() const noexcept { return {memory_, bytes_}; }
-
- private:
-  std::size_t bytes_;
-  std::byte* memory_;
-};
 
 class RiskSearch {
  public:
@@ -109,7 +95,7 @@ class RiskSearch {
 
   /// A x of the picture that the samples give.
   [[nodiscard]] Result<std::vector<double>> samples_of(const Reconstructor& solver, std::span<const float> y) const {
-    const FrameMemory memory(solver.required_bytes());
+    const AlignedWorkspace memory(solver.required_bytes());
     std::vector<float> picture(static_cast<std::size_t>(response_.cols()));
     if (solver.solve(y, {}, memory.span(), picture).health == Health::invalid) {
       return fail(ErrorCode::out_of_range, "samples", "cannot be solved: one is not finite or far too large");

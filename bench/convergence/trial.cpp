@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bench/timing.hpp"
+#include "recon/aligned_workspace.hpp"
 #include "recon/lambda_rule.hpp"
 #include "sim/built_in_scenes.hpp"
 #include "sim/random.hpp"
@@ -39,7 +40,7 @@ Outcomes solve_all(std::vector<recon::Reconstructor>& solvers, const std::vector
   for (std::size_t s = 0; s < samples.size(); ++s) {
     recon::Reconstructor& solver = solvers[std::min(s, solvers.size() - 1)];
     if (!solver.set_iterations(iterations)) continue;
-    const Workspace memory(solver.required_bytes());
+    const recon::AlignedWorkspace memory(solver.required_bytes());
     std::vector<float> x(samples[s].truth.size());
     const recon::FrameInfo info = solver.solve(samples[s].y, {}, memory.span(), x);
     if (pictures == Pictures::cut_to_positive) {
@@ -137,7 +138,7 @@ std::vector<Reached> measure_at(std::vector<recon::Reconstructor>& solvers, cons
 }
 
 double frame_ms(const recon::Reconstructor& solver, const Sample& sample) {
-  const Workspace memory(solver.required_bytes());
+  const recon::AlignedWorkspace memory(solver.required_bytes());
   std::vector<float> x(sample.truth.size());
   return median_ms([&] { static_cast<void>(solver.solve(sample.y, {}, memory.span(), x)); });
 }

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <cstddef>
-#include <memory>
-#include <new>
 #include <span>
 
 #include "firmware/pipeline/frame_solver.hpp"
+#include "recon/aligned_workspace.hpp"
 #include "recon/reconstructor.hpp"
 
 namespace compueye::firmware {
@@ -24,14 +22,8 @@ class ReconstructorSolver final : public FrameSolver {
                          std::span<float> x) noexcept override;
 
  private:
-  static constexpr std::align_val_t alignment{64};
-  struct Release {
-    void operator()(std::byte* memory) const noexcept { ::operator delete(memory, alignment); }
-  };
-
   const recon::Reconstructor& reconstructor_;
-  std::size_t bytes_;
-  std::unique_ptr<std::byte, Release> workspace_;
+  recon::AlignedWorkspace workspace_;
 };
 
 }  // namespace compueye::firmware

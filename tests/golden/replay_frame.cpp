@@ -3,32 +3,17 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <new>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "recon/aligned_workspace.hpp"
 #include "recon/core/parts/frame_solver.hpp"
 #include "recon/core/parts/frozen_frame.hpp"
-#include "recon/core/parts/workspace.hpp"
 
 using namespace compueye::recon;
 
 namespace {
-
-/// Memory as the frame path wants it.
-class Aligned {
- public:
-  explicit Aligned(std::size_t size) : memory_(static_cast<std::byte*>(::operator new(size, alignment))) {}
-  Aligned(const Aligned&) = delete;
-  Aligned& operator=(const Aligned&) = delete;
-  ~Aligned() { ::operator delete(memory_, alignment); }
-  [[nodiscard]] std::byte* data() const { return memory_; }
-
- private:
-  static constexpr std::align_val_t alignment{core::Workspace::alignment};
-  std::byte* memory_;
-};
 
 /// Compiler, processor and the clone of the frame path that this processor gets: what instruction counts depend on.
 int print_build() {
@@ -66,21 +51,21 @@ int replay(const char* path, int times) {
   std::error_code error;
   const std::uintmax_t length = std::filesystem::file_size(path, error);
   const std::size_t file_size = error ? 0 : static_cast<std::size_t>(length);
-  const Aligned bytes(file_size + 1);
+  const AlignedWorkspace bytes(file_size + 1);
   std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(file_size));
+  file.read(reinterpret_cast<char*>(bytes.span().data()), static_cast<std::streamsize>(file_size));
   core::FrozenFrame frame;
-  const core::Thawed thawed = core::thaw(bytes.data(), file_size, frame);
+  const core::Thawed thawed = core::thaw(bytes.span().data(), file_size, frame);
   if (error || !file || thawed != core::Thawed::ready) {
     std::fprintf(stderr, "%s: %s\n", path, !error && file ? why(thawed) : "cannot be read");
     return 1;
   }
   const std::size_t size = core::workspace_bytes(frame.problem);
-  const Aligned workspace(size);
+  const AlignedWorkspace workspace(size);
   std::vector<float> x(frame.problem.pixels());
   FrameInfo info;
   for (int k = 0; k < times; ++k) {
-    info = core::solve_frame(frame.problem, frame.y, frame.weights, workspace.data(), x.data());
+    info = core::solve_frame(frame.problem, frame.y, frame.weights, workspace.span().data(), x.data());
   }
   const std::size_t differing = core::differing_pixels(frame, x.data());
   const bool same = differing == 0 && info.objective == frame.objective;

@@ -69,7 +69,7 @@ struct Copy {
   }
   recon::core::Thawed thaw() { return recon::core::thaw(memory.span().data(), memory.span().size(), frame); }
 
-  AlignedBytes memory;
+  recon::AlignedWorkspace memory;
   recon::core::FrozenFrame frame;
 };
 
@@ -101,7 +101,7 @@ TEST_CASE("every setting gives the same bits again from its frozen bytes alone")
       REQUIRE(copy.thaw() == recon::core::Thawed::ready);
       const recon::core::FrozenFrame& frame = copy.frame;
       CHECK(recon::core::workspace_bytes(frame.problem) == solver->required_bytes());
-      const AlignedBytes workspace(recon::core::workspace_bytes(frame.problem));
+      const recon::AlignedWorkspace workspace(recon::core::workspace_bytes(frame.problem));
       std::vector<float> x(frame.problem.pixels());
       const auto info =
           recon::core::solve_frame(frame.problem, frame.y, frame.weights, workspace.span().data(), x.data());

@@ -61,7 +61,7 @@ std::uint64_t golden(const recon::core::LinearOperator<float>& op) {
   std::vector<float> x, u, y(op.rows), back(op.cols, 0.0F);
   for (std::size_t n = 0; n < op.cols; ++n) x.push_back(static_cast<float>((n * 37) % 101) / 101.0F);
   for (std::size_t m = 0; m < op.rows; ++m) u.push_back(static_cast<float>((m * 53) % 97) / 97.0F - 0.25F);
-  const AlignedBytes memory(op.scratch_size() * sizeof(float) + 64);
+  const recon::AlignedWorkspace memory(op.scratch_size() * sizeof(float) + 64);
   auto* scratch = reinterpret_cast<float*>(memory.span().data());
   recon::core::forward(op, x.data(), y.data(), scratch);
   recon::core::adjoint_accumulate(op, u.data(), back.data(), scratch);

@@ -24,7 +24,7 @@ TEST_CASE("solving a frame does not touch the heap, for any solver, basis, const
     for (const SolverSetting& setting : every_setting()) {
       CAPTURE(setting.name);
       const auto solver = recon::Reconstructor::create(a, 10, 13, setting.objective, setting.plan).value();
-      const AlignedBytes workspace(solver.required_bytes());
+      const recon::AlignedWorkspace workspace(solver.required_bytes());
       const HeapUse before = heap_use_of_this_thread();
       const auto whole = solver.solve(y, {}, workspace.span(), x);
       const auto with_missing = solver.solve(y, weights, workspace.span(), x);

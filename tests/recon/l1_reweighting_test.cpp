@@ -106,7 +106,7 @@ TEST_CASE("l1 reweighting starts every frame afresh, and reports no gap") {
   plan.measure_gap = true;
   const auto solver = Reconstructor::create(p.a, 1, pixels, objective_of(0.1), plan);
   REQUIRE(solver.has_value());
-  const AlignedBytes workspace(solver->required_bytes());
+  const recon::AlignedWorkspace workspace(solver->required_bytes());
   std::vector<float> x(pixels), again(pixels);
   CHECK(solver->solve(p.y, {}, workspace.span(), x).duality_gap < 0.0);
   static_cast<void>(solver->solve(q.y, {}, workspace.span(), again));

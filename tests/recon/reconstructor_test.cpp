@@ -104,7 +104,7 @@ TEST_CASE("required_bytes is exact: a solver touches its last byte and none beyo
     plan.max_reweighted = 2;
     const auto solver = Reconstructor::create(a, 6, 8, setting.objective, plan).value();
     const std::size_t bytes = solver.required_bytes();
-    const AlignedBytes memory(bytes + 256);
+    const recon::AlignedWorkspace memory(bytes + 256);
     std::memset(memory.span().data(), 0xA5, bytes + 256);
     std::vector<float> x(48), weights(20, 1.0F);
     weights[4] = weights[9] = 0.0F;
@@ -129,7 +129,7 @@ TEST_CASE("the same input gives the same bits, whatever was in the workspace bef
   for (const SolverSetting& setting : every_setting()) {
     CAPTURE(setting.name);
     const auto solver = Reconstructor::create(a, 6, 8, setting.objective, setting.plan).value();
-    const AlignedBytes memory(solver.required_bytes());
+    const recon::AlignedWorkspace memory(solver.required_bytes());
     std::vector<float> first(48), second(48), between(48);
     std::memset(memory.span().data(), 0, memory.span().size());
     const auto before = solver.solve(y, weights, memory.span(), first);

@@ -110,7 +110,7 @@ void check_against_double(const Eye& eye, const recon::MirrorSymmetry& symmetry,
   REQUIRE(tables.has_value());
   CHECK(tables->view.rows_at_once == at_once);
   CHECK(recon::core::bytes(tables->view) == tables->bytes());
-  const AlignedBytes memory(tables->view.scratch_size() * sizeof(T));
+  const recon::AlignedWorkspace memory(tables->view.scratch_size() * sizeof(T));
   auto* scratch = reinterpret_cast<T*>(memory.span().data());
   const auto x = random_vector(random, eye.rows * eye.cols), u = random_vector(random, eye.a.rows());
   const auto xt = cast<T>(x), ut = cast<T>(u);

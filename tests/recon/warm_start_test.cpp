@@ -64,7 +64,7 @@ class Sequence {
 
  private:
   const recon::Reconstructor& solver_;
-  AlignedBytes workspace_;
+  recon::AlignedWorkspace workspace_;
 };
 
 }  // namespace
@@ -143,7 +143,7 @@ TEST_CASE("channels that come and go, and frames that fail, leave a sound state"
   CHECK(std::all_of(back.x.begin(), back.x.end(), [](float v) { return v >= 0.0F && v <= 1.0F; }));
   // Another problem in the same memory is another problem.
   const auto other = make(scene.a, 8, true, recon::BasisKind::haar);
-  AlignedBytes memory(std::max(other.required_bytes(), warm.required_bytes()));
+  recon::AlignedWorkspace memory(std::max(other.required_bytes(), warm.required_bytes()));
   std::vector<float> x(80);
   CHECK_FALSE(warm.solve(scene.samples(1, 1), {}, memory.span(), x).warm);
   CHECK(warm.solve(scene.samples(1, 2), {}, memory.span(), x).warm);

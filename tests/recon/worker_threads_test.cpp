@@ -73,7 +73,7 @@ Applied<T> applied_by(recon::OwnedTables<T>& tables, const recon::core::Crew& cr
   auto& problem = tables.problem;
   problem.employ(crew);
   const auto& psi = problem.psi;
-  const AlignedBytes memory((problem.a.scratch_size() + psi.scratch_size()) * sizeof(T) + 64);
+  const recon::AlignedWorkspace memory((problem.a.scratch_size() + psi.scratch_size()) * sizeof(T) + 64);
   auto* scratch = reinterpret_cast<T*>(memory.span().data());
   const auto x = cast<T>(random_vector(random, static_cast<int>(problem.a.cols)));
   const auto y = cast<T>(random_vector(random, static_cast<int>(problem.a.rows)));
@@ -224,7 +224,7 @@ TEST_CASE("sharing a frame does not touch the heap, after a rest neither") {
   plan.threads = 3;
   const Response a = measured(4);
   const auto solver = recon::Reconstructor::create(a, side, side, objective, plan).value();
-  const AlignedBytes workspace(solver.required_bytes());
+  const recon::AlignedWorkspace workspace(solver.required_bytes());
   std::vector<float> y(static_cast<std::size_t>(a.rows()), 1.0F), x(side * side);
   const HeapUse before = heap_use_of_this_thread();
   for (int k = 0; k < 3; ++k) {

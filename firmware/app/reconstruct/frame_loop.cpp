@@ -6,18 +6,10 @@
 #include <span>
 
 #include "hal/try.hpp"
-#include "recon/core/parts/workspace.hpp"
+#include "recon/aligned_workspace.hpp"
 
 namespace compueye::firmware {
 namespace {
-
-struct alignas(recon::core::Workspace::alignment) Line {
-  std::byte bytes[recon::core::Workspace::alignment];
-};
-
-std::vector<Line> workspace_of(const recon::Reconstructor& reconstructor) {
-  return std::vector<Line>((reconstructor.required_bytes() + sizeof(Line) - 1) / sizeof(Line));
-}
 
 hal::Result<void> check_health(const recon::FrameInfo& info, std::int64_t frame) {
   if (info.health != recon::Health::invalid) return {};
@@ -31,7 +23,7 @@ hal::Result<void> check_health(const recon::FrameInfo& info, std::int64_t frame)
 hal::Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& reconstructor,
                                                          const FrameInputs& inputs, const Truth* truth,
                                                          PictureOutputs& outputs, Session& session) {
-  std::vector<Line> workspace = workspace_of(reconstructor);
+  const recon::AlignedWorkspace workspace(reconstructor.required_bytes());
   std::vector<float> picture(static_cast<std::size_t>(reconstructor.pixels()));
   std::vector<FrameRecord> records;
   records.reserve(static_cast<std::size_t>(inputs.frames));
@@ -43,8 +35,7 @@ hal::Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstruc
     tell(f);
     FrameRecord record;
     const std::int64_t began_ns = session.clock().now_ns();
-    record.info = reconstructor.solve(inputs.samples_of(f), inputs.weights_of(f),
-                                      std::as_writable_bytes(std::span(workspace)), picture);
+    record.info = reconstructor.solve(inputs.samples_of(f), inputs.weights_of(f), workspace.span(), picture);
     record.solve_ms = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-6;
     TRY(session.check_stop());
     TRY(check_health(record.info, f));

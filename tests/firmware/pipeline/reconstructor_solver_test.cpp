@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "recon/aligned_workspace.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
 using namespace compueye;
@@ -29,11 +30,6 @@ recon::Reconstructor make_reconstructor() {
   return recon::Reconstructor::create(response, rows, cols, objective, plan).value();
 }
 
-/// 64-byte aligned, as the reconstructor wants it.
-struct alignas(64) Line {
-  std::byte bytes[64];
-};
-
 std::vector<float> samples(float level) {
   std::vector<float> y;
   for (int m = 0; m < channels; ++m) y.push_back(level * static_cast<float>(m % 5));
@@ -48,13 +44,12 @@ TEST_CASE("the pipeline's solver gives the reconstructor's picture, frame after 
   CHECK(solver.channels() == channels);
   CHECK(solver.format().rows == rows);
   CHECK(solver.format().cols == cols);
-  std::vector<Line> workspace(reconstructor.required_bytes() / sizeof(Line));
+  const recon::AlignedWorkspace workspace(reconstructor.required_bytes());
   std::vector<float> expected(rows * cols), x(rows * cols), weights(channels, 1.0F);
   weights[4] = 0.0F;
   for (const float level : {0.5F, 0.0F, 1.5F}) {
     const std::vector<float> y = samples(level);
-    const recon::FrameInfo wanted =
-        reconstructor.solve(y, weights, std::as_writable_bytes(std::span(workspace)), expected);
+    const recon::FrameInfo wanted = reconstructor.solve(y, weights, workspace.span(), expected);
     REQUIRE(wanted.health != recon::Health::invalid);
     const tests::HeapUse before = tests::heap_use_of_this_thread();
     const recon::FrameInfo info = solver.solve(y, weights, x);
