@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calib/pixel_grid.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::calib {
 namespace {
@@ -79,24 +80,20 @@ ConeSection section_of(const hal::EyeGeometry& eye, const hal::ObjectPlane& plan
 
 hal::Result<recon::Response> nominal_response(const hal::EyeGeometry& eye, const hal::ObjectPlane& plane,
                                               const Progress& progress) {
-  auto valid =
-      eye.validate().and_then([&] { return plane.validate(); }).and_then([&] { return check_distance(eye, plane); });
-  if (!valid) return tl::unexpected(valid.error());
+  TRY(eye.validate());
+  TRY(plane.validate());
+  TRY(check_distance(eye, plane));
 
   // Counting first costs a few percent of the time; growing by doubling would cost twice the memory.
   PixelGrid grid(plane);
   std::int64_t entries = 0;
   Rows rows;
-  auto done = for_each_ommatidium(eye, progress, "counting pixels", [&](int i, int k) {
-                entries += grid.count_touched(section_of(eye, plane, i, k));
-              }).and_then([&] {
-                  return reserve(rows, eye.ommatidia(), entries);
-                }).and_then([&] {
-    rows.start.push_back(0);
-    return for_each_ommatidium(eye, progress, "nominal response",
-                               [&](int i, int k) { append_row(rows, grid, section_of(eye, plane, i, k)); });
-  });
-  if (!done) return tl::unexpected(done.error());
+  TRY(for_each_ommatidium(eye, progress, "counting pixels",
+                          [&](int i, int k) { entries += grid.count_touched(section_of(eye, plane, i, k)); }));
+  TRY(reserve(rows, eye.ommatidia(), entries));
+  rows.start.push_back(0);
+  TRY(for_each_ommatidium(eye, progress, "nominal response",
+                          [&](int i, int k) { append_row(rows, grid, section_of(eye, plane, i, k)); }));
   return recon::Response::from_csr(eye.ommatidia(), plane.pixels(), std::move(rows.start), std::move(rows.columns),
                                    std::move(rows.values));
 }

@@ -12,6 +12,7 @@
 #include "calib/pixel_grid.hpp"
 #include "calib/row_draws.hpp"
 #include "calib/smooth_field.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::calib {
 namespace {
@@ -159,10 +160,9 @@ class Builder {
 hal::Result<recon::Response> plausible_response(const hal::EyeGeometry& eye, const hal::ObjectPlane& plane,
                                                 const BuildErrors& errors, std::uint64_t seed,
                                                 const Progress& progress) {
-  if (auto ok = check(errors); !ok) return tl::unexpected(ok.error());
-  auto nominal = nominal_response(eye, plane, progress);
-  if (!nominal) return nominal;
-  const auto row_start = nominal->row_start();
+  TRY(check(errors));
+  auto nominal = TRY(nominal_response(eye, plane, progress));
+  const auto row_start = nominal.row_start();
   try {
     Builder builder(eye, plane, errors, seed);
     for (int i = 0; i < eye.rows; ++i) {

@@ -31,8 +31,11 @@ class ByteTransport {
   /// Reads up to `into.size()` bytes of the stream. Errors: timeout (usable afterwards), disconnected, io.
   [[nodiscard]] virtual Result<std::size_t> read(std::span<std::byte> into, std::int64_t deadline_ns) = 0;
 
-  /// Writes all of `from` or fails.
-  [[nodiscard]] virtual Result<void> write(std::span<const std::byte> from, std::int64_t deadline_ns) = 0;
+  /// Writes all of `from` or fails. The protocol of eyes has no stream towards the device: error unsupported.
+  [[nodiscard]] virtual Result<void> write(std::span<const std::byte> from, std::int64_t /*deadline_ns*/) {
+    return fail(ErrorCode::unsupported, describe().serial,
+                "an eye takes no stream of bytes (" + std::to_string(from.size()) + " given); use control()");
+  }
 
   /// One request on the control channel (USB EP0, HID feature report): towards the device when `reply` is empty, from
   /// it otherwise; returns the bytes received into `reply`. Errors: timeout, disconnected, io (the device refused it).

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "hal/try.hpp"
 #include "sim/cone_section.hpp"
 #include "sim/picture_integral.hpp"
 
@@ -120,8 +121,8 @@ hal::Result<void> Optics::validate() const {
 }
 
 hal::Result<std::vector<double>> Optics::expose(const Scene& scene) const {
-  if (auto ok = validate(); !ok) return tl::unexpected(ok.error());
-  if (auto ok = sim::validate(scene); !ok) return tl::unexpected(ok.error());
+  TRY(validate());
+  TRY(sim::validate(scene));
   const PictureIntegral picture(scene);
   const double front_mm = eye.radius_mm + eye.lens_height_mm;
   const double scene_z = front_mm + scene.distance_mm.value_or(object.distance_mm);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "hal/try.hpp"
+
 namespace compueye::sim {
 namespace {
 
@@ -34,8 +36,8 @@ std::vector<Overlap> overlaps(int sources, double source_size, int targets, doub
 }  // namespace
 
 hal::Result<hal::Image> scene_truth(const Scene& scene, const hal::ObjectPlane& object) {
-  if (auto ok = validate(scene); !ok) return tl::unexpected(ok.error());
-  if (auto ok = object.validate(); !ok) return tl::unexpected(ok.error());
+  TRY(validate(scene));
+  TRY(object.validate());
   const hal::Image& picture = scene.picture;
   if (picture.rows == object.rows && picture.cols == object.cols && scene.width_mm == object.width_mm &&
       scene.height_mm == object.height_mm) {

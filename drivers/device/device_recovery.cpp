@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "hal/try.hpp"
+
 #include "drivers/device/device_source.hpp"
 
 namespace compueye::device {
@@ -138,7 +140,7 @@ void DeviceSource::close_transport() noexcept {
 
 hal::Result<void> DeviceSource::open() {
   close_transport();
-  if (auto opened = transport_->open(); !opened) return opened;
+  TRY(transport_->open());
   transport_open_ = true;
   const std::string& found = transport_->describe().serial;
   if (serial_.empty() || found.empty() || found == serial_) return {};
@@ -146,11 +148,10 @@ hal::Result<void> DeviceSource::open() {
 }
 
 hal::Result<void> DeviceSource::ping(std::int64_t until_ns) {
-  const auto pong = requests_.ping(until_ns);
-  if (!pong) return tl::unexpected(pong.error());
+  const auto pong = TRY(requests_.ping(until_ns));
   // A device that was streaming and was stopped is configured.
-  if (pong->state == protocol::DeviceState::idle) extent_.saw_idle();
-  return protocol::check_version(pong->version, serial_.empty() ? transport_->describe().bus : serial_);
+  if (pong.state == protocol::DeviceState::idle) extent_.saw_idle();
+  return protocol::check_version(pong.version, serial_.empty() ? transport_->describe().bus : serial_);
 }
 
 tl::unexpected<hal::Error> DeviceSource::other_eye(const std::string& found) {
@@ -161,15 +162,14 @@ tl::unexpected<hal::Error> DeviceSource::other_eye(const std::string& found) {
 
 /// What became of the stream before, and whether the device has started anew since the last look.
 hal::Result<void> DeviceSource::look_at_status(std::int64_t until_ns) {
-  const auto status = requests_.status(until_ns);
-  if (!status) return tl::unexpected(status.error());
-  if (extent_.is_open()) close_stream(extent_.close(*status, clock_.now_ns()), lost_as_);
-  if (has_status_ && status->boot_count != status_.boot_count) {
+  const auto status = TRY(requests_.status(until_ns));
+  if (extent_.is_open()) close_stream(extent_.close(status, clock_.now_ns()), lost_as_);
+  if (has_status_ && status.boot_count != status_.boot_count) {
     ++failures_[Failure::rebooted];
     machine_.doubt_identity();
     clock_anew_ = true;
   }
-  status_ = *status;
+  status_ = status;
   has_status_ = true;
   return {};
 }
@@ -178,7 +178,7 @@ hal::Result<void> DeviceSource::fetch_descriptor(std::int64_t until_ns) {
   if (!pages_) {
     pages_.emplace(settings_.bus->page_bytes, transport_->describe().bus);
   }
-  if (auto page = requests_.page(*pages_, until_ns); !page) return page;
+  TRY(requests_.page(*pages_, until_ns));
   if (!pages_->complete()) return {};
   auto found = protocol::parse_descriptor(pages_->bytes(), transport_->describe().bus);
   pages_.reset();

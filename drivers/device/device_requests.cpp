@@ -4,6 +4,7 @@
 #include <array>
 
 #include "drivers/protocol/little_endian.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::device {
 
@@ -25,24 +26,21 @@ hal::Result<protocol::PingReply> DeviceRequests::ping(std::int64_t until_ns) {
   std::array<std::byte, 4> nonce{};
   protocol::store_little(nonce.data(), ++nonce_);
   std::array<std::byte, protocol::PingReply::bytes> reply{};
-  const auto got = request(Request::ping, nonce, reply, until_ns);
-  if (!got) return tl::unexpected(got.error());
-  return protocol::parse_ping(std::span(reply).first(std::min(*got, reply.size())), nonce_, transport_.describe().bus);
+  const auto got = TRY(request(Request::ping, nonce, reply, until_ns));
+  return protocol::parse_ping(std::span(reply).first(std::min(got, reply.size())), nonce_, transport_.describe().bus);
 }
 
 hal::Result<protocol::Status> DeviceRequests::status(std::int64_t until_ns) {
   std::array<std::byte, protocol::Status::bytes> reply{};
-  const auto got = request(Request::status, {}, reply, until_ns);
-  if (!got) return tl::unexpected(got.error());
-  return protocol::parse_status(std::span(reply).first(std::min(*got, reply.size())), transport_.describe().bus);
+  const auto got = TRY(request(Request::status, {}, reply, until_ns));
+  return protocol::parse_status(std::span(reply).first(std::min(got, reply.size())), transport_.describe().bus);
 }
 
 hal::Result<void> DeviceRequests::page(protocol::DescriptorPages& pages, std::int64_t until_ns) {
   std::array<std::byte, protocol::most_control_bytes> page{};
   const auto into = std::span(page).first(std::min(pages.reply_bytes(), page.size()));
-  const auto got = request(Request::get_desc, pages.request(), into, until_ns);
-  if (!got) return tl::unexpected(got.error());
-  return pages.accept(into.first(std::min(*got, into.size())));
+  const auto got = TRY(request(Request::get_desc, pages.request(), into, until_ns));
+  return pages.accept(into.first(std::min(got, into.size())));
 }
 
 hal::Result<void> DeviceRequests::set_configuration(const protocol::Configuration& wanted, std::int64_t until_ns) {
@@ -54,9 +52,8 @@ hal::Result<void> DeviceRequests::set_configuration(const protocol::Configuratio
 hal::Result<void> DeviceRequests::check_configuration(const protocol::Configuration& wanted, std::string_view serial,
                                                       std::int64_t until_ns) {
   std::array<std::byte, protocol::Configuration::bytes> echo{};
-  const auto got = request(Request::get_config, {}, echo, until_ns);
-  if (!got) return tl::unexpected(got.error());
-  return protocol::check_echo(wanted, std::span(echo).first(std::min(*got, echo.size())), serial);
+  const auto got = TRY(request(Request::get_config, {}, echo, until_ns));
+  return protocol::check_echo(wanted, std::span(echo).first(std::min(got, echo.size())), serial);
 }
 
 }  // namespace compueye::device

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "hal/try.hpp"
+
 namespace compueye::device {
 namespace {
 
@@ -70,7 +72,7 @@ hal::Result<protocol::Configuration> configuration_for(const DeviceSettings& set
   const auto longest = static_cast<std::uint32_t>(std::min<std::int64_t>(device.most_exposure_ns, wanted.period_ns()));
   wanted.exposure_ns = settings.exposure_ns == 0 ? longest : static_cast<std::uint32_t>(settings.exposure_ns);
   wanted.config_id = 1;  // any that is none, to check the rest
-  if (auto right = protocol::check_configuration(wanted, device); !right) return tl::unexpected(right.error());
+  TRY(protocol::check_configuration(wanted, device));
   wanted.config_id = 0;
   return wanted;
 }

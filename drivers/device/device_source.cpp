@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "drivers/protocol/bus.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::device {
 namespace {
@@ -31,23 +32,21 @@ std::uint32_t random_config_id() {
 hal::Result<std::unique_ptr<DeviceSource>> DeviceSource::create(DeviceSettings settings,
                                                                 std::unique_ptr<hal::ByteTransport> transport,
                                                                 hal::Clock& clock) {
-  if (auto right = check_settings(settings); !right) return tl::unexpected(std::move(right.error()));
+  TRY(check_settings(settings));
   if (!transport) return hal::fail(hal::ErrorCode::usage, settings.serial, "an eye needs a transport to be read over");
   std::unique_ptr<DeviceSource> source(new DeviceSource(std::move(settings), std::move(transport), clock));
-  auto identified = source->get_to(MachineState::configure, source->settings_.start_limit_ns);
-  if (!identified) return tl::unexpected(std::move(identified.error()));
+  TRY(source->get_to(MachineState::configure, source->settings_.start_limit_ns));
   const DeviceSettings& wanted = source->settings_;
   const protocol::DeviceDescriptor& device = *source->descriptor_;
-  auto configuration = configuration_for(wanted, device);
-  if (!configuration) return tl::unexpected(std::move(configuration.error()));
-  configuration->config_id = wanted.first_config_id != 0 ? wanted.first_config_id - 1 : random_config_id();
-  source->configuration_ = *configuration;
-  source->description_ = device.source_description(wanted.bus->name, configuration->frame_rate_mhz * 1e-3);
-  const std::int64_t usual_ns = std::max<std::int64_t>(5 * configuration->period_ns(), 50'000'000);
+  auto configuration = TRY(configuration_for(wanted, device));
+  configuration.config_id = wanted.first_config_id != 0 ? wanted.first_config_id - 1 : random_config_id();
+  source->configuration_ = configuration;
+  source->description_ = device.source_description(wanted.bus->name, configuration.frame_rate_mhz * 1e-3);
+  const std::int64_t usual_ns = std::max<std::int64_t>(5 * configuration.period_ns(), 50'000'000);
   source->silence_ns_ = wanted.silence_ns != 0 ? wanted.silence_ns : usual_ns;
   source->reader_ = make_stream_reader(wanted.bus->framing, device);
   source->chunk_.resize(chunk_bytes(*wanted.bus, source->transport_->describe().max_packet));
-  const std::size_t frame = protocol::frame_size(*wanted.bus, device, configuration->format).bytes;
+  const std::size_t frame = protocol::frame_size(*wanted.bus, device, configuration.format).bytes;
   source->babble_bytes_ = 4 * frame + 1024;
   source->late_reads_ = static_cast<int>(frame / source->chunk_.size()) + 2;
   return source;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "drivers/protocol/little_endian.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::protocol {
 namespace {
@@ -43,9 +44,8 @@ hal::Result<void> check_configuration(const Configuration& wanted, const DeviceD
     return hal::fail(hal::ErrorCode::out_of_range, place,
                      "the device does not send samples as " + std::string(name(wanted.format)));
   }
-  auto rate = within("the frame rate in mHz", wanted.frame_rate_mhz, std::max(device.least_frame_rate_mhz, 1U),
-                     device.most_frame_rate_mhz, place);
-  if (!rate) return rate;
+  TRY(within("the frame rate in mHz", wanted.frame_rate_mhz, std::max(device.least_frame_rate_mhz, 1U),
+             device.most_frame_rate_mhz, place));
   const auto period = static_cast<std::uint64_t>(wanted.period_ns());
   const auto longest = static_cast<std::uint32_t>(std::min<std::uint64_t>(device.most_exposure_ns, period));
   return within("the exposure in ns", wanted.exposure_ns, device.least_exposure_ns, longest, place);
@@ -74,6 +74,18 @@ hal::Result<void> check_echo(const Configuration& wanted, std::span<const std::b
   return hal::fail(
       hal::ErrorCode::mismatch, std::string(place),
       "the device did not take its configuration: " + difference + "; check it against the device's limits");
+}
+
+void store(const Illumination& illumination, std::span<std::byte, Illumination::bytes> bytes) noexcept {
+  store_little(bytes.data(), illumination.illuminator);
+  store_little(bytes.data() + 1, illumination.tag);
+  store_little(bytes.data() + 2, illumination.level);
+  store_little(bytes.data() + 4, illumination.settle_ns);
+}
+
+Illumination load_illumination(std::span<const std::byte, Illumination::bytes> bytes) noexcept {
+  return {load_little<std::uint8_t>(bytes.data()), load_little<std::uint8_t>(bytes.data() + 1),
+          load_little<std::uint16_t>(bytes.data() + 2), load_little<std::uint32_t>(bytes.data() + 4)};
 }
 
 }  // namespace compueye::protocol

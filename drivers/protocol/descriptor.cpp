@@ -6,6 +6,7 @@
 
 #include "drivers/protocol/crc32c.hpp"
 #include "drivers/protocol/little_endian.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::protocol {
 namespace {
@@ -133,8 +134,7 @@ hal::SourceDescription DeviceDescriptor::source_description(std::string_view bac
 }
 
 hal::Result<void> check_descriptor(const DeviceDescriptor& d) {
-  auto texts = check_texts(d);
-  if (!texts) return texts;
+  TRY(check_texts(d));
   const auto refuse = [&](std::string sentence) {
     return hal::fail(hal::ErrorCode::out_of_range, d.serial, "the descriptor " + std::move(sentence));
   };
@@ -162,7 +162,7 @@ hal::Result<void> check_descriptor(const DeviceDescriptor& d) {
 }
 
 hal::Result<std::vector<std::byte>> serialise(const DeviceDescriptor& d) {
-  if (auto right = check_descriptor(d); !right) return tl::unexpected(std::move(right.error()));
+  TRY(check_descriptor(d));
   std::vector<std::byte> bytes(fixed_bytes);
   append_text(bytes, d.serial);
   append_text(bytes, d.firmware);
@@ -224,11 +224,10 @@ hal::Result<DescriptorPrefix> load_descriptor_prefix(std::span<const std::byte> 
 }
 
 hal::Result<DeviceDescriptor> parse_descriptor(std::span<const std::byte> bytes, std::string_view place) {
-  const auto prefix = load_descriptor_prefix(bytes, place);
-  if (!prefix) return tl::unexpected(prefix.error());
-  if (auto version = check_version(prefix->version, place); !version) return tl::unexpected(std::move(version.error()));
-  if (prefix->length != bytes.size() || bytes.size() < DeviceDescriptor::least_bytes) {
-    return bad(place, "says that it is " + std::to_string(prefix->length) + " bytes long and has " +
+  const auto prefix = TRY(load_descriptor_prefix(bytes, place));
+  TRY(check_version(prefix.version, place));
+  if (prefix.length != bytes.size() || bytes.size() < DeviceDescriptor::least_bytes) {
+    return bad(place, "says that it is " + std::to_string(prefix.length) + " bytes long and has " +
                           std::to_string(bytes.size()));
   }
   const std::byte* const fixed = bytes.data();
@@ -237,7 +236,7 @@ hal::Result<DeviceDescriptor> parse_descriptor(std::span<const std::byte> bytes,
     return bad(place, "came damaged (CRC); fetch it again");
   }
   DeviceDescriptor d;
-  d.version = prefix->version;
+  d.version = prefix.version;
   const std::uint32_t channels = load_little<std::uint32_t>(fixed + 16);
   if (channels < 1 || channels > static_cast<std::uint32_t>(most_channels)) {
     return bad(place,
@@ -253,7 +252,7 @@ hal::Result<DeviceDescriptor> parse_descriptor(std::span<const std::byte> bytes,
   }
   load_fixed(fixed, d);
   load_tables(bytes.subspan(header, tables), fixed, d);
-  if (auto right = check_descriptor(d); !right) return tl::unexpected(std::move(right.error()));
+  TRY(check_descriptor(d));
   return d;
 }
 

@@ -4,6 +4,7 @@
 
 #include "drivers/protocol/little_endian.hpp"
 #include "drivers/protocol/requests.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::protocol {
 
@@ -33,15 +34,14 @@ std::size_t DescriptorPages::reply_bytes() const noexcept {
 hal::Result<void> DescriptorPages::accept(std::span<const std::byte> page) {
   if (complete()) return {};
   if (length_ == 0) {
-    const auto prefix = load_descriptor_prefix(page, place_);
-    if (!prefix) return tl::unexpected(prefix.error());
-    if (auto version = check_version(prefix->version, place_); !version) return version;
-    if (page.size() != std::min(page_bytes_, prefix->length)) {
+    const auto prefix = TRY(load_descriptor_prefix(page, place_));
+    TRY(check_version(prefix.version, place_));
+    if (page.size() != std::min(page_bytes_, prefix.length)) {
       return hal::fail(hal::ErrorCode::bad_format, place_,
                        "the first page of the descriptor has " + std::to_string(page.size()) + " bytes, expected " +
-                           std::to_string(std::min(page_bytes_, prefix->length)));
+                           std::to_string(std::min(page_bytes_, prefix.length)));
     }
-    length_ = prefix->length;
+    length_ = prefix.length;
     bytes_.reserve(length_);
   } else if (page.size() != reply_bytes()) {
     return hal::fail(hal::ErrorCode::bad_format, place_,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "drivers/protocol/little_endian.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::protocol {
 namespace {
@@ -56,12 +57,11 @@ hal::Result<DeviceEmulator> DeviceEmulator::create(EmulatorSettings settings, Sa
   if (!generator) {
     return hal::fail(hal::ErrorCode::usage, settings.descriptor.serial, "an emulated eye needs a generator of samples");
   }
-  auto bytes = serialise(settings.descriptor);
-  if (!bytes) return tl::unexpected(std::move(bytes.error()));
+  auto bytes = TRY(serialise(settings.descriptor));
   settings.events = settings.events && settings.bus->framing == Framing::packets;
-  if (auto right = check_settings(settings); !right) return tl::unexpected(std::move(right.error()));
+  TRY(check_settings(settings));
   if (settings.link_bytes_per_s <= 0.0) settings.link_bytes_per_s = settings.bus->emulated_bytes_per_s;
-  return DeviceEmulator(std::move(settings), std::move(generator), std::move(*bytes), now_ns);
+  return DeviceEmulator(std::move(settings), std::move(generator), std::move(bytes), now_ns);
 }
 
 DeviceEmulator::DeviceEmulator(EmulatorSettings settings, SampleGenerator generator,

@@ -17,7 +17,6 @@
 #include "drivers/protocol/emulator_faults.hpp"
 #include "drivers/protocol/frame_header.hpp"
 #include "drivers/protocol/hid_control.hpp"
-#include "drivers/protocol/illumination.hpp"
 #include "drivers/protocol/requests.hpp"
 #include "drivers/protocol/status.hpp"
 #include "drivers/protocol/stream_fifo.hpp"

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "drivers/protocol/hid_control.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::protocol {
 
@@ -40,7 +41,7 @@ hal::Result<void> EmulatedTransport::check_there() {
 
 hal::Result<std::size_t> EmulatedTransport::read(std::span<std::byte> into, std::int64_t deadline_ns) {
   for (;;) {
-    if (auto there = check_there(); !there) return tl::unexpected(std::move(there.error()));
+    TRY(check_there());
     const std::int64_t now_ns = clock_.now_ns();
     const DeviceEmulator::Transfer transfer = device_.read(now_ns, into);
     if (transfer.outcome != DeviceEmulator::Outcome::nothing) return outcome(transfer, "the stream", deadline_ns);
@@ -49,36 +50,28 @@ hal::Result<std::size_t> EmulatedTransport::read(std::span<std::byte> into, std:
   }
 }
 
-hal::Result<void> EmulatedTransport::write(std::span<const std::byte> from, std::int64_t /*deadline_ns*/) {
-  return hal::fail(hal::ErrorCode::unsupported, description_.serial,
-                   "an eye takes no stream of bytes (" + std::to_string(from.size()) + " given); use control()");
-}
-
 hal::Result<std::size_t> EmulatedTransport::control(std::uint8_t request, std::span<const std::byte> payload,
                                                     std::span<std::byte> reply, std::int64_t deadline_ns) {
-  if (auto there = check_there(); !there) return tl::unexpected(std::move(there.error()));
+  TRY(check_there());
   const std::int64_t answered_ns = clock_.now_ns() + control_ns;
   clock_.sleep_until_ns(std::min(answered_ns, deadline_ns));
   if (answered_ns > deadline_ns) return hal::timed_out();
-  if (auto there = check_there(); !there) return tl::unexpected(std::move(there.error()));
+  TRY(check_there());
   if (device_.bus().framing == Framing::reports) return feature_reports(request, payload, reply, deadline_ns);
   return outcome(device_.control(clock_.now_ns(), request, payload, reply), "a request", deadline_ns);
 }
 
 hal::Result<std::size_t> EmulatedTransport::feature_reports(std::uint8_t request, std::span<const std::byte> payload,
                                                             std::span<std::byte> reply, std::int64_t deadline_ns) {
-  const auto exchange = hid_exchange(request, payload, reply.size());
-  if (!exchange) return tl::unexpected(exchange.error());
-  if (exchange->has_set) {
-    auto set = outcome(device_.set_feature(clock_.now_ns(), exchange->set), "a feature report", deadline_ns);
-    if (!set) return set;
+  const auto exchange = TRY(hid_exchange(request, payload, reply.size()));
+  if (exchange.has_set) {
+    TRY(outcome(device_.set_feature(clock_.now_ns(), exchange.set), "a feature report", deadline_ns));
   }
-  if (!exchange->has_get) return std::size_t{0};
+  if (!exchange.has_get) return std::size_t{0};
   HidReportBytes report{};
-  auto got = outcome(device_.get_feature(clock_.now_ns(), static_cast<std::uint8_t>(exchange->get), report),
-                     "a feature report", deadline_ns);
-  if (!got) return got;
-  return hid_reply(request, payload, std::span<const std::byte>(report).first(*got), reply);
+  auto got = TRY(outcome(device_.get_feature(clock_.now_ns(), static_cast<std::uint8_t>(exchange.get), report),
+                         "a feature report", deadline_ns));
+  return hid_reply(request, payload, std::span<const std::byte>(report).first(got), reply);
 }
 
 hal::Result<std::size_t> EmulatedTransport::outcome(DeviceEmulator::Transfer transfer, const char* what,
@@ -100,7 +93,7 @@ hal::Result<std::size_t> EmulatedTransport::outcome(DeviceEmulator::Transfer tra
 /// No answer will come; an unplugging ends the wait, as it does on a real bus.
 tl::unexpected<hal::Error> EmulatedTransport::wait_in_vain(std::int64_t deadline_ns) {
   for (;;) {
-    if (auto there = check_there(); !there) return tl::unexpected(std::move(there.error()));
+    TRY(check_there());
     const std::int64_t now_ns = clock_.now_ns();
     if (now_ns >= deadline_ns) return hal::timed_out();
     clock_.sleep_until_ns(std::min(device_.next_change_ns(now_ns).value_or(deadline_ns), deadline_ns));

@@ -28,8 +28,6 @@ class EmulatedTransport final : public hal::ByteTransport {
   void close() noexcept override { attachment_ = 0; }
   /// USB: all that is ready, up to into.size(). HID: one report of 64 bytes a call.
   [[nodiscard]] hal::Result<std::size_t> read(std::span<std::byte> into, std::int64_t deadline_ns) override;
-  /// The protocol has no stream towards the device: error unsupported.
-  [[nodiscard]] hal::Result<void> write(std::span<const std::byte> from, std::int64_t deadline_ns) override;
   [[nodiscard]] hal::Result<std::size_t> control(std::uint8_t request, std::span<const std::byte> payload,
                                                  std::span<std::byte> reply, std::int64_t deadline_ns) override;
 

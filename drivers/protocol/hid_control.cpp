@@ -6,7 +6,6 @@
 
 #include "drivers/protocol/configuration.hpp"
 #include "drivers/protocol/descriptor_pages.hpp"
-#include "drivers/protocol/illumination.hpp"
 #include "drivers/protocol/little_endian.hpp"
 #include "drivers/protocol/requests.hpp"
 #include "drivers/protocol/status.hpp"

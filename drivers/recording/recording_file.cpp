@@ -83,8 +83,8 @@ class MemoryBytes final : public StoredBytes {
 
 }  // namespace
 
-hal::Error file_failure(int error_number, const std::filesystem::path& path, const char* action) {
-  return {code_of(error_number), path.string(),
+hal::Error file_failure(int error_number, const std::string& path, const char* action) {
+  return {code_of(error_number), path,
           std::string(action) + ": " + std::generic_category().message(error_number) + remedy(error_number)};
 }
 
@@ -107,16 +107,16 @@ int OpenFile::close() noexcept {
   return ::close(std::exchange(fd_, -1)) == 0 ? 0 : errno;
 }
 
-hal::Result<std::unique_ptr<StoredBytes>> stored_file(const std::filesystem::path& path) {
+hal::Result<std::unique_ptr<StoredBytes>> stored_file(const std::string& path) {
   // Without O_NONBLOCK the opening of a pipe would wait for its other end.
   OpenFile file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0) return tl::unexpected(file_failure(errno, path, "cannot be opened"));
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) return tl::unexpected(file_failure(errno, path, "cannot be read"));
   if (!S_ISREG(status.st_mode)) {
-    return hal::fail(ErrorCode::bad_format, path.string(), "is not a regular file, expected a recording");
+    return hal::fail(ErrorCode::bad_format, path, "is not a regular file, expected a recording");
   }
-  return std::make_unique<FileBytes>(std::move(file), path.string(), static_cast<std::uint64_t>(status.st_size));
+  return std::make_unique<FileBytes>(std::move(file), path, static_cast<std::uint64_t>(status.st_size));
 }
 
 std::unique_ptr<StoredBytes> stored_memory(std::vector<std::byte> bytes, std::string place) {

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,7 +13,7 @@ namespace compueye::recording {
 
 /// An error of the operating system about `path`: no_space (disk full, quota, file size limit), not_found, io; the
 /// sentence ends with what the system said.
-[[nodiscard]] hal::Error file_failure(int error_number, const std::filesystem::path& path, const char* action);
+[[nodiscard]] hal::Error file_failure(int error_number, const std::string& path, const char* action);
 
 /// An open file; closes it when it goes away.
 class OpenFile {
@@ -51,7 +50,7 @@ class StoredBytes {
 };
 
 /// A regular file. Errors: not_found, io, bad_format (a folder, a pipe or a device).
-[[nodiscard]] hal::Result<std::unique_ptr<StoredBytes>> stored_file(const std::filesystem::path& path);
+[[nodiscard]] hal::Result<std::unique_ptr<StoredBytes>> stored_file(const std::string& path);
 
 [[nodiscard]] std::unique_ptr<StoredBytes> stored_memory(std::vector<std::byte> bytes, std::string place);
 

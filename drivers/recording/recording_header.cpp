@@ -9,6 +9,7 @@
 #include "drivers/protocol/crc32c.hpp"
 #include "drivers/protocol/little_endian.hpp"
 #include "drivers/recording/recording_format.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::recording {
 namespace {
@@ -79,7 +80,7 @@ hal::Result<void> check_header(const RecordingHeader& header) {
 }
 
 hal::Result<std::vector<std::byte>> serialise(const RecordingHeader& header) {
-  if (auto ok = check_header(header); !ok) return tl::unexpected(std::move(ok.error()));
+  TRY(check_header(header));
   const hal::SourceDescription& s = header.source;
   const TextLengths texts{s.backend.size(), s.serial.size(), s.firmware.size(), header.settings.size()};
   std::vector<std::byte> bytes(header_bytes(static_cast<std::size_t>(s.channels), texts));
@@ -141,12 +142,11 @@ hal::Result<std::size_t> stated_header_bytes(std::span<const std::byte> begin, s
 }
 
 hal::Result<RecordingHeader> parse_header(std::span<const std::byte> bytes, std::string_view place) {
-  const auto stated = stated_header_bytes(bytes, place);
-  if (!stated) return tl::unexpected(stated.error());
-  if (*stated != bytes.size()) {
+  const auto stated = TRY(stated_header_bytes(bytes, place));
+  if (stated != bytes.size()) {
     return hal::fail(
         ErrorCode::bad_format, std::string(place),
-        "ends within its header: it has " + std::to_string(bytes.size()) + " of " + std::to_string(*stated) + " bytes");
+        "ends within its header: it has " + std::to_string(bytes.size()) + " of " + std::to_string(stated) + " bytes");
   }
   const std::size_t covered = bytes.size() - crc_bytes;
   if (protocol::crc32c(bytes.first(covered)) != load_little<std::uint32_t>(bytes.data() + covered)) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "drivers/recording/recording_format.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::recording {
 namespace {
@@ -14,10 +15,9 @@ constexpr std::size_t least_window = std::size_t{1} << 18U;
 
 }  // namespace
 
-hal::Result<RecordingReader> RecordingReader::open(const std::filesystem::path& path) {
-  auto bytes = stored_file(path);
-  if (!bytes) return tl::unexpected(std::move(bytes.error()));
-  return over(std::move(*bytes));
+hal::Result<RecordingReader> RecordingReader::open(const std::string& path) {
+  auto bytes = TRY(stored_file(path));
+  return over(std::move(bytes));
 }
 
 hal::Result<RecordingReader> RecordingReader::over(std::unique_ptr<StoredBytes> bytes) {
@@ -26,15 +26,13 @@ hal::Result<RecordingReader> RecordingReader::over(std::unique_ptr<StoredBytes> 
   const std::string& place = reader.bytes_->place();
   const std::uint64_t size = reader.bytes_->size();
   std::vector<std::byte> begin(static_cast<std::size_t>(std::min<std::uint64_t>(size, fixed_header_bytes)));
-  if (auto read = reader.bytes_->read_at(0, begin); !read) return tl::unexpected(std::move(read.error()));
-  const auto stated = stated_header_bytes(begin, place);
-  if (!stated) return tl::unexpected(stated.error());
-  begin.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size, *stated)));
-  if (auto read = reader.bytes_->read_at(0, begin); !read) return tl::unexpected(std::move(read.error()));
-  auto header = parse_header(begin, place);
-  if (!header) return tl::unexpected(std::move(header.error()));
-  reader.header_ = std::move(*header);
-  reader.first_block_at_ = *stated;
+  TRY(reader.bytes_->read_at(0, begin));
+  const auto stated = TRY(stated_header_bytes(begin, place));
+  begin.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size, stated)));
+  TRY(reader.bytes_->read_at(0, begin));
+  auto header = TRY(parse_header(begin, place));
+  reader.header_ = std::move(header);
+  reader.first_block_at_ = stated;
   const auto channels = static_cast<std::size_t>(reader.header_.source.channels);
   reader.frame_bytes_ = frame_block_bytes(channels, reader.header_.source.bits);
   const std::size_t wanted = std::max(least_window, 2 * reader.frame_bytes_);
@@ -62,9 +60,7 @@ hal::Result<std::span<const std::byte>> RecordingReader::window(std::uint64_t of
     buffer_at_ = offset;
     buffer_size_ = 0;
     const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(buffer_.size(), bytes_->size() - offset));
-    if (auto read = bytes_->read_at(offset, std::span(buffer_).first(size)); !read) {
-      return tl::unexpected(std::move(read.error()));
-    }
+    TRY(bytes_->read_at(offset, std::span(buffer_).first(size)));
     buffer_size_ = size;
   }
   return std::span<const std::byte>(buffer_).subspan(static_cast<std::size_t>(offset - buffer_at_), count);
@@ -73,19 +69,17 @@ hal::Result<std::span<const std::byte>> RecordingReader::window(std::uint64_t of
 /// The whole, right block that begins at `offset`, if there is one.
 hal::Result<std::optional<RecordingReader::Found>> RecordingReader::block_at(std::uint64_t offset) {
   if (bytes_->size() - offset < end_block_bytes) return std::nullopt;
-  const auto head_bytes = window(offset, block_head_bytes);
-  if (!head_bytes) return tl::unexpected(head_bytes.error());
-  const auto head = decode_head(head_bytes->first<block_head_bytes>(), frame_bytes_);
+  const auto head_bytes = TRY(window(offset, block_head_bytes));
+  const auto head = decode_head(head_bytes.first<block_head_bytes>(), frame_bytes_);
   if (!head || !follows(*head, last_, last_frame_)) return std::nullopt;
   const std::size_t length = head->kind == BlockKind::frame ? frame_bytes_ : end_block_bytes;
   if (bytes_->size() - offset < length) return std::nullopt;
-  const auto bytes = window(offset, length);
-  if (!bytes) return tl::unexpected(bytes.error());
-  if (!sealed(*bytes)) return std::nullopt;
-  if (head->kind == BlockKind::frame && !decode_samples(*bytes, header_.source.bits, codes_, valid_)) {
+  const auto bytes = TRY(window(offset, length));
+  if (!sealed(bytes)) return std::nullopt;
+  if (head->kind == BlockKind::frame && !decode_samples(bytes, header_.source.bits, codes_, valid_)) {
     return std::nullopt;
   }
-  return Found{*head, *bytes};
+  return Found{*head, bytes};
 }
 
 /// Offset >= `offset` of the next piece of a block's magic number, which may be cut by the end; the end if there is
@@ -93,14 +87,13 @@ hal::Result<std::optional<RecordingReader::Found>> RecordingReader::block_at(std
 hal::Result<std::uint64_t> RecordingReader::next_candidate(std::uint64_t offset) {
   while (offset < bytes_->size()) {
     const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(frame_bytes_, bytes_->size() - offset));
-    const auto piece = window(offset, count);
-    if (!piece) return tl::unexpected(piece.error());
+    const auto piece = TRY(window(offset, count));
     for (std::size_t k = 0; k < count; ++k) {
-      const void* const found = std::memchr(piece->data() + k, block_magic[0], count - k);
+      const void* const found = std::memchr(piece.data() + k, block_magic[0], count - k);
       if (found == nullptr) break;
-      k = static_cast<std::size_t>(static_cast<const std::byte*>(found) - piece->data());
+      k = static_cast<std::size_t>(static_cast<const std::byte*>(found) - piece.data());
       const std::size_t known = std::min(block_magic.size(), count - k);
-      if (std::memcmp(piece->data() + k, block_magic.data(), known) != 0) continue;
+      if (std::memcmp(piece.data() + k, block_magic.data(), known) != 0) continue;
       if (known == block_magic.size() || offset + count == bytes_->size()) return offset + k;
     }
     // Cut by the piece's end, not by the file's: look at its last bytes again.
@@ -120,9 +113,8 @@ hal::Result<bool> RecordingReader::begins_block(std::uint64_t offset) {
   const std::uint64_t rest = bytes_->size() - offset;
   // Its magic number, or what there is of it, was seen; behind damage a byte or two of that prove nothing.
   if (rest < block_head_bytes) return offset == at_ || rest >= block_magic.size();
-  const auto bytes = window(offset, block_head_bytes);
-  if (!bytes) return tl::unexpected(bytes.error());
-  const auto head = decode_head(bytes->first<block_head_bytes>(), frame_bytes_);
+  const auto bytes = TRY(window(offset, block_head_bytes));
+  const auto head = decode_head(bytes.first<block_head_bytes>(), frame_bytes_);
   return head && follows(*head, last_, last_frame_) &&
          rest < (head->kind == BlockKind::frame ? frame_bytes_ : end_block_bytes);
 }
@@ -133,16 +125,14 @@ hal::Result<void> RecordingReader::note_tail(std::uint64_t from) {
   // A block that was begun is shorter than one, so it cannot lie further from the end.
   std::uint64_t look = std::max(from, bytes_->size() - std::min<std::uint64_t>(bytes_->size(), frame_bytes_));
   while (look < bytes_->size()) {
-    const auto candidate = next_candidate(look);
-    if (!candidate) return tl::unexpected(candidate.error());
-    if (*candidate == bytes_->size()) break;
-    const auto begun = begins_block(*candidate);
-    if (!begun) return tl::unexpected(begun.error());
-    if (*begun) {
-      torn_at = *candidate;
+    const auto candidate = TRY(next_candidate(look));
+    if (candidate == bytes_->size()) break;
+    const auto begun = TRY(begins_block(candidate));
+    if (begun) {
+      torn_at = candidate;
       break;
     }
-    look = *candidate + 1;
+    look = candidate + 1;
   }
   note_damage(from, torn_at);
   // Where no later number tells how many they were.
@@ -156,30 +146,27 @@ hal::Result<void> RecordingReader::note_tail(std::uint64_t from) {
 hal::Result<std::optional<RecordingReader::Found>> RecordingReader::next_block() {
   std::uint64_t candidate = at_;
   while (candidate < bytes_->size()) {
-    auto found = block_at(candidate);
-    if (!found) return found;
-    if (*found) {
+    auto found = TRY(block_at(candidate));
+    if (found) {
       note_damage(at_, candidate);
-      at_ = candidate + (*found)->bytes.size();
+      at_ = candidate + found->bytes.size();
       return found;
     }
-    const auto next = next_candidate(candidate + 1);
-    if (!next) return tl::unexpected(next.error());
-    candidate = *next;
+    const auto next = TRY(next_candidate(candidate + 1));
+    candidate = next;
   }
   return std::nullopt;
 }
 
 hal::Result<RecordedFrame> RecordingReader::next() {
   if (over_) return hal::stream_ended();
-  const auto found = next_block();
-  if (!found) return tl::unexpected(found.error());
-  if (!*found) {
-    if (auto noted = note_tail(at_); !noted) return tl::unexpected(std::move(noted.error()));
+  const auto found = TRY(next_block());
+  if (!found) {
+    TRY(note_tail(at_));
     over_ = true;
     return hal::stream_ended();
   }
-  const BlockHead& head = (*found)->head;
+  const BlockHead& head = found->head;
   damage_.blocks += head.books.index - last_.index;
   last_ = head.books;
   if (head.kind == BlockKind::end) {

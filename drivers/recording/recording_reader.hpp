@@ -2,10 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "drivers/recording/recording_block.hpp"
@@ -47,7 +47,7 @@ struct RecordedEnd {
 class RecordingReader {
  public:
   /// Reads and checks the header. Errors: those of stored_file(), stated_header_bytes() and parse_header().
-  [[nodiscard]] static hal::Result<RecordingReader> open(const std::filesystem::path& path);
+  [[nodiscard]] static hal::Result<RecordingReader> open(const std::string& path);
   [[nodiscard]] static hal::Result<RecordingReader> over(std::unique_ptr<StoredBytes> bytes);
 
   [[nodiscard]] const RecordingHeader& header() const noexcept { return header_; }

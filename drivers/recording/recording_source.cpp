@@ -1,27 +1,26 @@
 #include "drivers/recording/recording_source.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <system_error>
 #include <utility>
+
+#include "hal/try.hpp"
 
 namespace compueye::recording {
 namespace {
 
-std::filesystem::path path_of_run(const std::filesystem::path& first, int run) {
+std::string path_of_run(const std::string& first, int run) {
   if (run == 1) return first;
-  std::string name = first.stem().string();
-  name += "-" + std::to_string(run);
-  name += first.extension().string();
-  return first.parent_path() / name;
+  const std::filesystem::path path = first;
+  return path.parent_path() / (path.stem().string() + "-" + std::to_string(run) + path.extension().string());
 }
 
 }  // namespace
 
 hal::Result<std::unique_ptr<RecordingSource>> RecordingSource::create(RecordingSettings settings,
                                                                       hal::SampleSource& source, hal::Clock& clock) {
-  if (auto ok = check_header({source.describe(), 0, settings.settings}); !ok) {
-    return tl::unexpected(std::move(ok.error()));
-  }
+  TRY(check_header({source.describe(), 0, settings.settings}));
   return std::unique_ptr<RecordingSource>(new RecordingSource(std::move(settings), source, clock));
 }
 
@@ -35,7 +34,7 @@ hal::Result<void> RecordingSource::do_start() {
   waiting_ =
       std::make_unique<WaitingFrames>(std::max<std::size_t>(4, settings_.most_waiting_bytes / frame_bytes), channels);
   started_ns_ = clock_.now_ns();
-  if (auto started = source_.start(); !started) return started;
+  TRY(source_.start());
   path_ = path_of_run(settings_.path, runs_ + 1);
   auto writer = RecordingWriter::create(
       path_, {source_.describe(), started_ns_ + settings_.unix_minus_clock_ns, settings_.settings},
@@ -55,7 +54,7 @@ hal::Result<void> RecordingSource::do_start() {
     thread_ = std::thread([this] { write_waiting(); });
   } catch (const std::system_error& error) {
     source_.stop();
-    return hal::fail(hal::ErrorCode::io, path_.string(), std::string("no thread to write it: ") + error.what());
+    return hal::fail(hal::ErrorCode::io, path_, std::string("no thread to write it: ") + error.what());
   }
   return {};
 }

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,7 +23,7 @@ enum class WhenFull : std::uint8_t {
 };
 
 struct RecordingSettings {
-  std::filesystem::path path;            ///< of the first run; the n-th goes to "<stem>-<n><extension>"
+  std::string path;                      ///< of the first run; the n-th goes to "<stem>-<n><extension>"
   std::string settings;                  ///< for the header, lines "key = value"
   std::int64_t unix_minus_clock_ns = 0;  ///< wall clock minus Clock, for the header
   WhenFull when_full = WhenFull::skip;
@@ -48,7 +47,7 @@ class RecordingSource final : public hal::SampleSource {
   ~RecordingSource() override;
 
   /// Where the current or last run goes.
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
   // Of the current or last run, from any thread:
   [[nodiscard]] std::uint64_t recorded() const noexcept { return recorded_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t unrecorded() const noexcept {
@@ -80,7 +79,7 @@ class RecordingSource final : public hal::SampleSource {
   hal::Clock& clock_;
 
   int runs_ = 0;
-  std::filesystem::path path_;
+  std::string path_;
   std::int64_t started_ns_ = 0;
   Ending ending_ = Ending::stopped;
   std::optional<RecordingWriter> writer_;

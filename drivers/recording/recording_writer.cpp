@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "hal/try.hpp"
+
 namespace compueye::recording {
 namespace {
 
@@ -17,7 +19,7 @@ using hal::ErrorCode;
 
 constexpr const char* cannot_write = "cannot be written";
 
-hal::Result<OpenFile> open_new(const std::filesystem::path& path, bool& regular) {
+hal::Result<OpenFile> open_new(const std::string& path, bool& regular) {
   OpenFile file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   struct stat status {};
   if (file.get() < 0 && errno == EEXIST && ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
@@ -36,20 +38,18 @@ RecordedBooks books_of(const hal::FrameAccount& account, std::uint64_t index, st
 
 }  // namespace
 
-hal::Result<RecordingWriter> RecordingWriter::create(const std::filesystem::path& path, const RecordingHeader& header,
+hal::Result<RecordingWriter> RecordingWriter::create(const std::string& path, const RecordingHeader& header,
                                                      std::int64_t sync_interval_ns) {
-  const auto bytes = serialise(header);
-  if (!bytes) return tl::unexpected(bytes.error());
+  const auto bytes = TRY(serialise(header));
   RecordingWriter writer;
   writer.path_ = path;
   writer.bits_ = header.source.bits;
   writer.channels_ = static_cast<std::size_t>(header.source.channels);
   writer.buffer_.resize(frame_block_bytes(writer.channels_, writer.bits_));
   writer.sync_interval_ns_ = sync_interval_ns;
-  auto file = open_new(path, writer.regular_);
-  if (!file) return tl::unexpected(std::move(file.error()));
-  writer.file_ = std::move(*file);
-  if (auto written = writer.write(*bytes); !written) {
+  auto file = TRY(open_new(path, writer.regular_));
+  writer.file_ = std::move(file);
+  if (auto written = writer.write(bytes); !written) {
     // Without its header the file would be of no use to anybody.
     if (writer.regular_) ::unlink(path.c_str());
     return tl::unexpected(std::move(written.error()));
@@ -59,7 +59,7 @@ hal::Result<RecordingWriter> RecordingWriter::create(const std::filesystem::path
 
 hal::Result<void> RecordingWriter::write(std::span<const std::byte> bytes) {
   if (failed_) {
-    return hal::fail(ErrorCode::io, path_.string(), "nothing more is recorded, since an earlier write failed");
+    return hal::fail(ErrorCode::io, path_, "nothing more is recorded, since an earlier write failed");
   }
   std::size_t done = 0;
   while (done < bytes.size()) {
@@ -81,7 +81,7 @@ hal::Result<void> RecordingWriter::write(std::span<const std::byte> bytes) {
 hal::Result<void> RecordingWriter::append(const hal::SampleBlock& block, std::int64_t arrival_ns,
                                           const hal::FrameAccount& account, std::uint64_t unrecorded) {
   if (block.codes.size() != channels_ || block.valid.size() != channels_ || block.bits != bits_) {
-    return hal::fail(ErrorCode::mismatch, path_.string(),
+    return hal::fail(ErrorCode::mismatch, path_,
                      "frame " + std::to_string(block.frame) + " has " + std::to_string(block.codes.size()) +
                          " channels of " + std::to_string(block.bits) + " bits, the recording is of " +
                          std::to_string(channels_) + " of " + std::to_string(bits_));
@@ -94,16 +94,16 @@ hal::Result<void> RecordingWriter::append(const hal::SampleBlock& block, std::in
   head.arrival_ns = arrival_ns;
   head.books = books_of(account, frames_, unrecorded);
   if (!follows(head, last_, last_frame_)) {
-    return hal::fail(ErrorCode::mismatch, path_.string(),
+    return hal::fail(ErrorCode::mismatch, path_,
                      "frame " + std::to_string(block.frame) +
                          " has a number or an account that lies behind that of the frame before");
   }
   if (!encode_frame_block(head, block.codes, block.valid, bits_, buffer_)) {
-    return hal::fail(ErrorCode::out_of_range, path_.string(),
+    return hal::fail(ErrorCode::out_of_range, path_,
                      "frame " + std::to_string(block.frame) + " holds a code above " + std::to_string(bits_) +
                          " bits, or a counter or time that a recording has no room for");
   }
-  if (auto written = write(buffer_); !written) return written;
+  TRY(write(buffer_));
   ++frames_;
   last_ = head.books;
   ++last_.index;
@@ -132,7 +132,7 @@ hal::Result<void> RecordingWriter::finish(Ending ending, std::int64_t at_ns, con
     if (encode_end_block(head, bytes)) {
       done = write(bytes);
     } else {
-      done = hal::fail(ErrorCode::out_of_range, path_.string(),
+      done = hal::fail(ErrorCode::out_of_range, path_,
                        "the source's account holds a counter that a recording has no room for");
     }
   }

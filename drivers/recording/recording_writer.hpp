@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "drivers/recording/recording_block.hpp"
@@ -31,8 +31,7 @@ class RecordingWriter {
   /// Makes the file and writes the header. A file that exists is refused (io): recordings are never overwritten; a
   /// device or a pipe that exists is written to. `sync_interval_ns` 0: only at the end. Errors besides: those of
   /// check_header(), not_found (no such folder), no_space.
-  [[nodiscard]] static hal::Result<RecordingWriter> create(const std::filesystem::path& path,
-                                                           const RecordingHeader& header,
+  [[nodiscard]] static hal::Result<RecordingWriter> create(const std::string& path, const RecordingHeader& header,
                                                            std::int64_t sync_interval_ns = default_sync_interval_ns);
 
   /// Appends one frame. `arrival_ns`: Clock time since the recording's start, >= 0; `account`: the source's, with this
@@ -49,7 +48,7 @@ class RecordingWriter {
 
   /// Whether a write has failed, after which nothing more is written.
   [[nodiscard]] bool failed() const noexcept { return failed_; }
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
   /// Of the file: all of them in whole blocks.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
@@ -59,7 +58,7 @@ class RecordingWriter {
   [[nodiscard]] hal::Result<void> write(std::span<const std::byte> bytes);
 
   OpenFile file_;
-  std::filesystem::path path_;
+  std::string path_;
   bool regular_ = true;
   bool failed_ = false;
   int bits_ = 0;

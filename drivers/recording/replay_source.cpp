@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "hal/try.hpp"
+
 namespace compueye::recording {
 
-hal::Result<std::unique_ptr<ReplaySource>> ReplaySource::open(const std::filesystem::path& path, ReplayPace pace,
+hal::Result<std::unique_ptr<ReplaySource>> ReplaySource::open(const std::string& path, ReplayPace pace,
                                                               hal::Clock& clock) {
-  auto recording = RecordingReader::open(path);
-  if (!recording) return tl::unexpected(std::move(recording.error()));
-  return std::make_unique<ReplaySource>(std::move(*recording), pace, clock);
+  auto recording = TRY(RecordingReader::open(path));
+  return std::make_unique<ReplaySource>(std::move(recording), pace, clock);
 }
 
 ReplaySource::ReplaySource(RecordingReader recording, ReplayPace pace, hal::Clock& clock)

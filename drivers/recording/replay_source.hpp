@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "drivers/recording/recording_reader.hpp"
@@ -25,8 +25,8 @@ enum class ReplayPace : std::uint8_t {
 class ReplaySource final : public hal::SampleSource {
  public:
   /// `clock` must outlive it. Errors: those of RecordingReader::open().
-  [[nodiscard]] static hal::Result<std::unique_ptr<ReplaySource>> open(const std::filesystem::path& path,
-                                                                       ReplayPace pace, hal::Clock& clock);
+  [[nodiscard]] static hal::Result<std::unique_ptr<ReplaySource>> open(const std::string& path, ReplayPace pace,
+                                                                       hal::Clock& clock);
   ReplaySource(RecordingReader recording, ReplayPace pace, hal::Clock& clock);
 
   /// What was read so far, for its header, damage and end.

@@ -47,8 +47,6 @@ class HidTransport final : public hal::ByteTransport {
   /// One report as the device sent it: 64 bytes, or fewer from a device that is wrong. `into` has room for 64. Times
   /// out in whole milliseconds. Errors: timeout, disconnected, io, usage (less room).
   [[nodiscard]] hal::Result<std::size_t> read(std::span<std::byte> into, std::int64_t deadline_ns) override;
-  /// The protocol has no stream towards the device: error unsupported.
-  [[nodiscard]] hal::Result<void> write(std::span<const std::byte> from, std::int64_t deadline_ns) override;
   [[nodiscard]] hal::Result<std::size_t> control(std::uint8_t request, std::span<const std::byte> payload,
                                                  std::span<std::byte> reply, std::int64_t deadline_ns) override;
 

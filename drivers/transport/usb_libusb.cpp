@@ -166,11 +166,6 @@ hal::Result<std::size_t> UsbTransport::read(std::span<std::byte> into, std::int6
   return connection_->ring->read(into, deadline_ns);
 }
 
-hal::Result<void> UsbTransport::write(std::span<const std::byte> from, std::int64_t /*deadline_ns*/) {
-  return hal::fail(hal::ErrorCode::unsupported, description_.serial,
-                   "an eye takes no stream of bytes (" + std::to_string(from.size()) + " given); use control()");
-}
-
 hal::Result<std::size_t> UsbTransport::control(std::uint8_t request, std::span<const std::byte> payload,
                                                std::span<std::byte> reply, std::int64_t deadline_ns) {
   if (!connection_) return tl::unexpected(not_open());

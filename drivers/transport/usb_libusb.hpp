@@ -52,8 +52,6 @@ class UsbTransport final : public hal::ByteTransport {
   [[nodiscard]] hal::Result<void> open() override;
   void close() noexcept override;
   [[nodiscard]] hal::Result<std::size_t> read(std::span<std::byte> into, std::int64_t deadline_ns) override;
-  /// The protocol has no stream towards the device: error unsupported.
-  [[nodiscard]] hal::Result<void> write(std::span<const std::byte> from, std::int64_t deadline_ns) override;
   /// Times out in whole milliseconds, at least 1.
   [[nodiscard]] hal::Result<std::size_t> control(std::uint8_t request, std::span<const std::byte> payload,
                                                  std::span<std::byte> reply, std::int64_t deadline_ns) override;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "hal/try.hpp"
+
 namespace compueye::firmware {
 namespace {
 
@@ -100,9 +102,9 @@ std::int32_t first_saturated_code(int bits, double share) {
 }  // namespace
 
 Result<Correction> Correction::create(const CorrectionSettings& settings, const hal::SourceDescription& source) {
-  if (auto ok = check_source(source); !ok) return tl::unexpected(ok.error());
+  TRY(check_source(source));
   const auto channels = static_cast<std::size_t>(source.channels);
-  if (auto ok = check_settings(settings, channels); !ok) return tl::unexpected(ok.error());
+  TRY(check_settings(settings, channels));
 
   Correction c;
   c.bits_ = source.bits;

@@ -10,6 +10,7 @@
 #include "firmware/pipeline/publish_stage.hpp"
 #include "firmware/pipeline/reconstruct_stage.hpp"
 #include "firmware/pipeline/run_control.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -137,11 +138,10 @@ void note_failure(RunSummary& summary, Ending ending, hal::Error error) {
 
 hal::Result<Pipeline> Pipeline::create(const PipelineSettings& settings, hal::SampleSource& source, FrameSolver& solver,
                                        hal::FrameSink& sink, hal::Clock& clock, FrameObserver* observer) {
-  if (auto ok = settings.validate(); !ok) return tl::unexpected(ok.error());
-  if (auto ok = check_fit(source.describe(), solver); !ok) return tl::unexpected(ok.error());
-  auto correction = Correction::create(settings.correction, source.describe());
-  if (!correction) return tl::unexpected(correction.error());
-  return Pipeline(std::make_unique<State>(settings, std::move(*correction), source, solver, sink, clock, observer));
+  TRY(settings.validate());
+  TRY(check_fit(source.describe(), solver));
+  auto correction = TRY(Correction::create(settings.correction, source.describe()));
+  return Pipeline(std::make_unique<State>(settings, std::move(correction), source, solver, sink, clock, observer));
 }
 
 Pipeline::Pipeline(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}

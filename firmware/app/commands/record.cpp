@@ -113,9 +113,9 @@ Result<Recorded> read_on(RecordingSource& source, const Goal& goal, Session& ses
 std::string text_of(const Board& board, const std::string& scene, const RecordingSource& source,
                     const Recorded& recorded) {
   std::string text =
-      fmt::format("{}: {} frames of {} channels of {} in front of {}, {} in {}; {}\n",
-                  visible_text(source.path().string()), source.recorded(), source.describe().channels, board.name,
-                  visible_text(scene), bytes(source.bytes()), duration(recorded.seconds), recorded.ending);
+      fmt::format("{}: {} frames of {} channels of {} in front of {}, {} in {}; {}\n", visible_text(source.path()),
+                  source.recorded(), source.describe().channels, board.name, visible_text(scene), bytes(source.bytes()),
+                  duration(recorded.seconds), recorded.ending);
   if (recorded.account.total_dropped() > 0) {
     text += fmt::format("{} frames were dropped before they reached the recorder\n", recorded.account.total_dropped());
   }
@@ -127,7 +127,7 @@ std::string text_of(const Board& board, const std::string& scene, const Recordin
 
 Json report_json(const Board& board, const std::string& scene, const RecordingSource& source,
                  const Recorded& recorded) {
-  return {{"file", source.path().string()},
+  return {{"file", source.path()},
           {"board", board.name},
           {"scene", scene},
           {"channels", source.describe().channels},

@@ -60,8 +60,8 @@ std::vector<std::string> RunSource::notes() const {
     }
   }
   if (recorder_ && recorder_->unrecorded() > 0) {
-    notes.push_back(fmt::format("{}: {} frames are not in it, which did not keep up", recorder_->path().string(),
-                                recorder_->unrecorded()));
+    notes.push_back(
+        fmt::format("{}: {} frames are not in it, which did not keep up", recorder_->path(), recorder_->unrecorded()));
   }
   return notes;
 }

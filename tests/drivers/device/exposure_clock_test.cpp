@@ -1,4 +1,3 @@
-#include "drivers/device/exposure_clock.hpp"
 
 #include <doctest/doctest.h>
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <string>
 
-#include "drivers/protocol/illumination.hpp"
 #include "drivers/protocol/status.hpp"
 #include "tests/drivers/protocol/wire_samples.hpp"
 

@@ -9,7 +9,6 @@
 #include "drivers/protocol/configuration.hpp"
 #include "drivers/protocol/crc32c.hpp"
 #include "drivers/protocol/hid_report.hpp"
-#include "drivers/protocol/illumination.hpp"
 #include "drivers/protocol/packet_stream.hpp"
 #include "drivers/protocol/requests.hpp"
 #include "drivers/protocol/status.hpp"

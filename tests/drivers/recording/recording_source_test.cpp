@@ -141,7 +141,7 @@ TEST_CASE("a recording that cannot be begun leaves the source stopped") {
   auto tee = RecordingSource::create(settings, *eye, clock).value();
   const auto refused = tee->start();
   REQUIRE_FALSE(refused);
-  CHECK(refused.error().place == settings.path.string());
+  CHECK(refused.error().place == settings.path);
   CHECK_FALSE(tee->started());
   CHECK_FALSE(eye->started());
 }
