@@ -8,6 +8,7 @@
 
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "firmware/text/number_text.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -21,14 +22,12 @@ constexpr std::int64_t patience_ns = 1'000'000'000;
 
 /// Median of some trials after one that warms the caches.
 hal::Result<double> median_ns(const TimedSolve& solve_ns, int iterations) {
-  if (auto warm = solve_ns(iterations); !warm) return tl::unexpected(std::move(warm.error()));
+  TRY(solve_ns(iterations));
   std::array<std::int64_t, repeats> times{};
   std::size_t count = 0;
   for (std::int64_t spent = 0; count < repeats && (count == 0 || spent < patience_ns); ++count) {
-    auto taken = solve_ns(iterations);
-    if (!taken) return tl::unexpected(std::move(taken.error()));
-    times[count] = *taken;
-    spent += *taken;
+    times[count] = TRY(solve_ns(iterations));
+    spent += times[count];
   }
   const auto middle = times.begin() + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(times.begin(), middle, times.begin() + static_cast<std::ptrdiff_t>(count));
@@ -75,16 +74,14 @@ double predicted_age_ms(double solve_ms, double period_ms) noexcept {
 }
 
 hal::Result<SolveTime> measure_solve_time(const TimedSolve& solve_ns, int most_iterations) {
-  const auto most = median_ns(solve_ns, most_iterations);
-  if (!most) return tl::unexpected(most.error());
+  const double most_ns = TRY(median_ns(solve_ns, most_iterations));
+  const double even = most_ns / most_iterations;
   const int few_iterations = std::max(1, most_iterations / 8);
-  if (few_iterations == most_iterations) return SolveTime{0.0, *most / most_iterations};
-  const auto few = median_ns(solve_ns, few_iterations);
-  if (!few) return tl::unexpected(few.error());
+  if (few_iterations == most_iterations) return SolveTime{0.0, even};
+  const double few_ns = TRY(median_ns(solve_ns, few_iterations));
   // A disturbed trial must not make iterations free or the rest negative.
-  const double even = *most / most_iterations;
-  const double slope = std::clamp((*most - *few) / (most_iterations - few_iterations), 0.5 * even, even);
-  return SolveTime{*most - slope * most_iterations, slope};
+  const double slope = std::clamp((most_ns - few_ns) / (most_iterations - few_iterations), 0.5 * even, even);
+  return SolveTime{most_ns - slope * most_iterations, slope};
 }
 
 DeadlineChoice choose_iterations(double deadline_ms, double period_ms, const SolveTime& time, int most_iterations) {
@@ -127,9 +124,8 @@ std::string DeadlineChoice::sentence() const {
 
 hal::Result<TrialFrame> take_trial_frame(const Board& board, const CorrectionSettings& settings,
                                          hal::SampleSource& source, hal::Clock& clock, const std::atomic<bool>& stop) {
-  auto correction = Correction::create(settings, source.describe());
-  if (!correction) return tl::unexpected(std::move(correction.error()));
-  if (auto started = source.start(); !started) return tl::unexpected(std::move(started.error()));
+  Correction correction = TRY(Correction::create(settings, source.describe()));
+  TRY(source.start());
   const auto block = first_block(board, source, clock, stop);
   if (!block) {
     source.stop();
@@ -137,10 +133,10 @@ hal::Result<TrialFrame> take_trial_frame(const Board& board, const CorrectionSet
   }
   const auto channels = static_cast<std::size_t>(source.describe().channels);
   TrialFrame frame{std::vector<float>(channels), std::vector<float>(channels)};
-  const CorrectionReport report = correction->apply(*block, frame.y, frame.weights);
+  const CorrectionReport report = correction.apply(*block, frame.y, frame.weights);
   source.stop();
   if (report.usable) return frame;
-  return unusable(board, *correction, report).map([] { return TrialFrame{}; });
+  return unusable(board, correction, report).map([] { return TrialFrame{}; });
 }
 
 hal::Result<DeadlineChoice> fit_deadline(double deadline_ms, double period_ms, const TrialFrame& frame, ReadyEye& eye,
@@ -151,7 +147,7 @@ hal::Result<DeadlineChoice> fit_deadline(double deadline_ms, double period_ms, c
   int solver_iterations = 0;
   const auto solve_ns = [&](int iterations) -> hal::Result<std::int64_t> {
     if (iterations != solver_iterations) {
-      if (auto set = eye.set_iterations(iterations); !set) return tl::unexpected(std::move(set.error()));
+      TRY(eye.set_iterations(iterations));
       solver = std::make_unique<ReconstructorSolver>(eye.reconstructor());
       solver_iterations = iterations;
     }
@@ -159,13 +155,13 @@ hal::Result<DeadlineChoice> fit_deadline(double deadline_ms, double period_ms, c
     static_cast<void>(solver->solve(frame.y, frame.weights, picture));
     return clock.now_ns() - begin_ns;
   };
-  const auto time = measure_solve_time(solve_ns, most);
-  if (!time) return tl::unexpected(time.error());
-  const DeadlineChoice choice = choose_iterations(deadline_ms, period_ms, *time, most);
+  const SolveTime time = TRY(measure_solve_time(solve_ns, most));
+  const DeadlineChoice choice = choose_iterations(deadline_ms, period_ms, time, most);
   // A direct solver has nothing to leave out: its one step is what it is.
   const recon::SolverKind kind = eye.reconstructor().plan().solver;
   if (kind == recon::SolverKind::tikhonov || kind == recon::SolverKind::tsvd) return choice;
-  return eye.set_iterations(choice.iterations).map([&] { return choice; });
+  TRY(eye.set_iterations(choice.iterations));
+  return choice;
 }
 
 }  // namespace compueye::firmware

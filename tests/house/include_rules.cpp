@@ -55,7 +55,11 @@ constexpr std::array<FolderRule, 26> rules{{
     {"firmware/sinks", "hal firmware/files firmware/sinks", none, true, none, false,
      "firmware/sinks: hal, firmware/files and OS headers"},
     {"firmware/text", "hal firmware/text", "fmt", false, none, false, "firmware/text: hal and fmt"},
-    {"firmware/eye", any, any, true, none, false, "firmware/eye: what a board makes of an eye"},
+    {"firmware/eye",
+     "hal recon recon/core calib sim drivers/protocol drivers/device drivers/transport firmware/files "
+     "firmware/pipeline firmware/text firmware/eye",
+     "toml++ fmt", false, none, false,
+     "firmware/eye: hal, recon, calib, sim, drivers, firmware/files, text and pipeline (its correction), toml++, fmt"},
     {"firmware/operating_points",
      "hal recon recon/core firmware/eye firmware/files firmware/pipeline firmware/text firmware/operating_points",
      "fmt nlohmann-json xxhash", false, none, false,

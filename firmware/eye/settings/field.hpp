@@ -63,16 +63,16 @@ inline void assign(std::optional<double>& member, const SettingValue& value) {
 inline void assign(std::string& member, const SettingValue& value) {
   member = text_of(value);
 }
-inline std::optional<SettingValue> shown(int member) {
+inline std::optional<SettingValue> value_of(int member) {
   return SettingValue(std::int64_t{member});
 }
-inline std::optional<SettingValue> shown(double member) {
+inline std::optional<SettingValue> value_of(double member) {
   return SettingValue(member);
 }
-inline std::optional<SettingValue> shown(const std::optional<double>& member) {
-  return member ? shown(*member) : std::nullopt;
+inline std::optional<SettingValue> value_of(const std::optional<double>& member) {
+  return member ? value_of(*member) : std::nullopt;
 }
-inline std::optional<SettingValue> shown(const std::string& member) {
+inline std::optional<SettingValue> value_of(const std::string& member) {
   return SettingValue(member);
 }
 
@@ -85,35 +85,67 @@ auto& member_of(auto& object) {
   }
 }
 
-/// The row of the member at the end of this path, field<&Board::eye, &hal::EyeGeometry::rows>({...}): numbers are
-/// `whole` or `real`; texts keep the type that the row names. A row that shows itself keeps that.
-template <auto... Path>
-Setting field(Setting row) {
-  using Member = std::remove_cvref_t<decltype(member_of<Path...>(std::declval<Board&>()))>;
-  if constexpr (std::is_same_v<Member, int>) row.type = SettingType::whole;
-  if constexpr (std::is_same_v<Member, double> || std::is_same_v<Member, std::optional<double>>) {
-    row.type = SettingType::real;
+/// A row as it is written down: what a word is not said of is as Setting has it.
+struct Row : Setting {
+  Row(std::string_view name, std::string_view what) {
+    key = name;
+    meaning = what;
   }
-  row.store = [](Board& board, const SettingValue& value) { assign(member_of<Path...>(board), value); };
-  if (row.show == nullptr) row.show = [](const Board& board) { return shown(member_of<Path...>(board)); };
-  return row;
+  Row& of(SettingType kind) { return type = kind, *this; }
+  Row& within(Range allowed) { return range = allowed, *this; }
+  Row& one_of(std::vector<std::string_view> words) {
+    return type = SettingType::choice, choices = std::move(words), *this;
+  }
+  Row& stated() { return required = true, *this; }
+  Row& otherwise(SettingValue value) { return fallback = std::move(value), *this; }
+  Row& otherwise(const char* word) { return otherwise(SettingValue(std::string(word))); }
+  Row& otherwise(int number) { return otherwise(SettingValue(std::int64_t{number})); }
+  Row& option_of(std::string_view takers, std::string_view name, std::string_view value) {
+    return commands = takers, option = name, value_name = value, *this;
+  }
+  Row& shown_as(std::string_view name) { return figure = name, *this; }
+  Row& stored(void (*how)(Board&, const SettingValue&), std::optional<SettingValue> (*back)(const Board&)) {
+    return store = how, show = back, *this;
+  }
+  Row& shown(std::optional<SettingValue> (*how)(const Board&)) { return show = how, *this; }
+  Row& overrules(void (*what)(Board&)) { return overrule = what, *this; }
+};
+
+/// The row of the member at the end of this path, field<&Board::eye, &hal::EyeGeometry::rows>("rows", "..."): a `whole`
+/// or a `real` number, or a text.
+template <auto... Path>
+Row field(std::string_view name, std::string_view meaning) {
+  using Member = std::remove_cvref_t<decltype(member_of<Path...>(std::declval<Board&>()))>;
+  constexpr bool number = std::is_same_v<Member, double> || std::is_same_v<Member, std::optional<double>>;
+  return Row(name, meaning)
+      .of(std::is_same_v<Member, int> ? SettingType::whole
+          : number                    ? SettingType::real
+                                      : SettingType::text)
+      .stored([](Board& board, const SettingValue& value) { assign(member_of<Path...>(board), value); },
+              [](const Board& board) { return value_of(member_of<Path...>(board)); });
 }
 
 /// The same for one of a table of names.
 template <auto Names, auto... Path>
-Setting choice_field(Setting row) {
-  row.type = SettingType::choice;
-  row.choices = words_of(Names());
-  row.store = [](Board& board, const SettingValue& value) {
-    member_of<Path...>(board) = kind_of(Names(), text_of(value));
-  };
-  row.show = [](const Board& board) -> std::optional<SettingValue> {
-    for (const auto& named : Names()) {
-      if (named.kind == member_of<Path...>(board)) return SettingValue(std::string(named.name));
-    }
-    return std::nullopt;
-  };
-  return row;
+Row choice_field(std::string_view name, std::string_view meaning) {
+  return Row(name, meaning)
+      .one_of(words_of(Names()))
+      .stored(
+          [](Board& board, const SettingValue& value) { member_of<Path...>(board) = kind_of(Names(), text_of(value)); },
+          [](const Board& board) -> std::optional<SettingValue> {
+            for (const auto& named : Names()) {
+              if (named.kind == member_of<Path...>(board)) return SettingValue(std::string(named.name));
+            }
+            return std::nullopt;
+          });
+}
+
+/// The rows of a section of board.toml.
+inline void add(std::vector<Setting>& all, std::string_view section, std::vector<Row> rows) {
+  for (Row& row : rows) {
+    row.section = section;
+    all.push_back(std::move(row));
+  }
 }
 
 }  // namespace compueye::firmware

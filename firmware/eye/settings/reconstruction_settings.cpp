@@ -8,11 +8,11 @@
 namespace compueye::firmware {
 namespace {
 
-using enum SettingType;
 using recon::Objective;
 using recon::Plan;
 using V = SettingValue;
 
+constexpr std::string_view section = "reconstruction";
 constexpr std::string_view all_that_solve = "run compare reconstruct";
 constexpr std::array<recon::Named<recon::Precision>, 2> precisions{
     {{"f32", recon::Precision::f32}, {"f64", recon::Precision::f64}}};
@@ -44,171 +44,108 @@ std::optional<V> show_box(const Board& b) {
   return V{std::vector<double>{b.objective.lo, b.objective.hi}};
 }
 
-std::vector<Setting> problem_rows() {
-  return {
-      choice_field<recon::solver_names, &Board::plan, &Plan::solver>(
-          {.section = "reconstruction",
-           .key = "solver",
-           .option = "--solver",
-           .commands = "reconstruct",
-           .value_name = "NAME",
-           .fallback = V{std::string("admm")},
-           .meaning = "docs/solvers.md says which to use when"}),
-      choice_field<recon::basis_names, &Board::objective, &Objective::basis>(
-          {.section = "reconstruction",
-           .key = "basis",
-           .option = "--basis",
-           .commands = "reconstruct",
-           .value_name = "NAME",
-           .fallback = V{std::string("dct")},
-           .meaning = "in which the picture is taken to be sparse"}),
-      choice_field<recon::constraint_names, &Board::objective, &Objective::constraint>(
-          {.section = "reconstruction",
-           .key = "constraint",
-           .option = "--constraint",
-           .commands = "compare",
-           .value_name = "NAME",
-           .fallback = V{std::string("nonnegative")},
-           .meaning = "what every pixel must obey"}),
-      {.section = "reconstruction",
-       .key = "box",
-       .option = "--box",
-       .commands = "reconstruct",
-       .value_name = "LO,HI",
-       .type = real_pair,
-       .range = {-1e6, 1e6},
-       .fallback = V{std::vector<std::int64_t>{0, 1}},
-       .meaning = "least and greatest intensity, white being 1; only with the box constraint",
-       .figure = "lo hi",
-       .store =
-           [](Board& b, const V& v) {
-             b.objective.lo = pair_of(v)[0];
-             b.objective.hi = pair_of(v)[1];
-           },
-       .show = show_box,
-       .overrule = [](Board& b) { b.objective.constraint = recon::ConstraintKind::box; }},
-  };
+void store_box(Board& b, const V& v) {
+  b.objective.lo = pair_of(v)[0];
+  b.objective.hi = pair_of(v)[1];
 }
 
-std::vector<Setting> weight_rows() {
-  return {
-      field<&Board::plan, &Plan::iterations>({.section = "reconstruction",
-                                              .key = "iterations",
-                                              .option = "--iterations",
-                                              .commands = all_that_solve,
-                                              .value_name = "K",
-                                              .range = {1, 1000000},
-                                              .fallback = V{std::int64_t{100}},
-                                              .meaning = "of the solver in every frame, no more and no fewer"}),
-      field<&Board::lambda>({.section = "reconstruction",
-                             .key = "lambda",
-                             .option = "--lambda",
-                             .commands = all_that_solve,
-                             .value_name = "V",
-                             .range = {0, 1e12},
-                             .meaning = "weight of the penalty; left out, it follows from the noise"}),
-      field<&Board::sigma>({.section = "reconstruction",
-                            .key = "sigma",
-                            .option = "--sigma",
-                            .commands = all_that_solve,
-                            .value_name = "V",
-                            .range = {0, 1e9},
-                            .meaning = "noise of one sample in fully seen white pixels; left out, it is LSB "
-                                       "sqrt(read_noise_lsb^2 + 1/12)",
-                            .overrule = [](Board& b) { b.lambda.reset(); }}),
-      field<&Board::plan, &Plan::rho>(
-          {.section = "reconstruction",
-           .key = "rho",
-           .option = "--rho",
-           .commands = "reconstruct",
-           .value_name = "V",
-           .range = {1e-12, 1e12},
-           .meaning = "ADMM penalty; left out, it follows from the response",
-           .show = [](const Board& b) { return b.plan.rho > 0.0 ? shown(b.plan.rho) : std::nullopt; }}),
-  };
+void add_problem(std::vector<Setting>& all) {
+  add(all, section,
+      {choice_field<recon::solver_names, &Board::plan, &Plan::solver>("solver",
+                                                                      "docs/solvers.md says which to use when")
+           .otherwise("admm")
+           .option_of("reconstruct", "--solver", "NAME"),
+       choice_field<recon::basis_names, &Board::objective, &Objective::basis>(
+           "basis", "in which the picture is taken to be sparse")
+           .otherwise("dct")
+           .option_of("reconstruct", "--basis", "NAME"),
+       choice_field<recon::constraint_names, &Board::objective, &Objective::constraint>("constraint",
+                                                                                        "what every pixel must obey")
+           .otherwise("nonnegative")
+           .option_of("compare", "--constraint", "NAME"),
+       Row("box", "least and greatest intensity, white being 1; only with the box constraint")
+           .of(SettingType::real_pair)
+           .within({-1e6, 1e6})
+           .otherwise(V{std::vector<std::int64_t>{0, 1}})
+           .option_of("reconstruct", "--box", "LO,HI")
+           .shown_as("lo hi")
+           .stored(store_box, show_box)
+           .overrules([](Board& b) { b.objective.constraint = recon::ConstraintKind::box; })});
 }
 
-std::vector<Setting> way_rows() {
-  return {
-      field<&Board::plan, &Plan::relaxation>({.section = "reconstruction",
-                                              .key = "relaxation",
-                                              .option = "--relaxation",
-                                              .commands = "reconstruct",
-                                              .value_name = "V",
-                                              .range = {0, 2, true, true},
-                                              .fallback = V{1.7},
-                                              .meaning = "over-relaxation of admm, cp and pdhg"}),
-      {.section = "reconstruction",
-       .key = "operator",
-       .option = "--operator",
-       .commands = "reconstruct",
-       .value_name = "NAME",
-       .type = choice,
-       .choices = operator_words(),
-       .fallback = V{std::string("auto")},
-       .meaning = "how A is applied; auto is the quickest that keeps every digit, bf16 and int8 round the response",
-       .store = store_operator,
-       .show = show_operator},
-      choice_field<start_names, &Board::plan, &Plan::warm_start>(
-          {.section = "reconstruction",
-           .key = "start",
-           .option = "--start",
-           .commands = "reconstruct",
-           .value_name = "NAME",
-           .fallback = V{std::string("cold")},
-           .meaning = "warm, with pdhg: a frame goes on from the last one, unless it has changed too much"}),
-      field<&Board::plan, &Plan::threads>({.section = "reconstruction",
-                                           .key = "threads",
-                                           .option = "--threads",
-                                           .commands = all_that_solve,
-                                           .value_name = "T",
-                                           .range = {1, recon::WorkerThreads::most},
-                                           .fallback = V{std::int64_t{1}},
-                                           .meaning = "that share a frame's work; pictures are the same bit for bit"}),
-  };
+void add_weight(std::vector<Setting>& all) {
+  add(all, section,
+      {field<&Board::plan, &Plan::iterations>("iterations", "of the solver in every frame, no more and no fewer")
+           .within({1, 1000000})
+           .otherwise(100)
+           .option_of(all_that_solve, "--iterations", "K"),
+       field<&Board::lambda>("lambda", "weight of the penalty; left out, it follows from the noise")
+           .within({0, 1e12})
+           .option_of(all_that_solve, "--lambda", "V"),
+       field<&Board::sigma>("sigma",
+                            "noise of one sample in fully seen white pixels; left out, it is LSB sqrt(read_noise_lsb^2 "
+                            "+ 1/12)")
+           .within({0, 1e9})
+           .option_of(all_that_solve, "--sigma", "V")
+           .overrules([](Board& b) { b.lambda.reset(); }),
+       field<&Board::plan, &Plan::rho>("rho", "ADMM penalty; left out, it follows from the response")
+           .within({1e-12, 1e12})
+           .option_of("reconstruct", "--rho", "V")
+           .shown([](const Board& b) { return b.plan.rho > 0.0 ? value_of(b.plan.rho) : std::nullopt; })});
 }
 
-/// What no board says.
-std::vector<Setting> command_rows() {
-  return {
-      choice_field<precision_names, &Board::plan, &Plan::precision>({.key = "precision",
-                                                                     .option = "--precision",
-                                                                     .commands = "reconstruct",
-                                                                     .value_name = "NAME",
-                                                                     .meaning = "of every number in the frame"}),
-      field<&Board::plan, &Plan::rank>({.key = "rank",
-                                        .option = "--rank",
-                                        .commands = "reconstruct",
-                                        .value_name = "R",
-                                        .range = {1, 1000000},
-                                        .meaning = "tsvd: how many singular values to keep (with --sigma: by rule); "
-                                                   "pdhg: how many modes to treat exactly (400)"}),
-      field<&Board::objective, &Objective::epsilon>(
-          {.key = "epsilon",
-           .option = "--epsilon",
-           .commands = "reconstruct",
-           .value_name = "V",
-           .range = {0, 1e12},
-           .meaning = "adm: min ||Psi x||_1 subject to ||W^(1/2)(Ax-y)|| <= V; omp: stop there; in white pixels"}),
-      field<&Board::plan, &Plan::l1_reweighting>(
-          {.key = "reweight",
-           .option = "--reweight",
-           .commands = "reconstruct",
-           .value_name = "V",
-           .range = {1e-12, 1e12},
-           .meaning = "admm in pixels: as many iterations again with weights 2V / (|x| + V), for pictures of few lit "
-                      "pixels; V about a tenth of their brightness"}),
-  };
+void add_way(std::vector<Setting>& all) {
+  add(all, section,
+      {field<&Board::plan, &Plan::relaxation>("relaxation", "over-relaxation of admm, cp and pdhg")
+           .within({0, 2, true, true})
+           .otherwise(V{1.7})
+           .option_of("reconstruct", "--relaxation", "V"),
+       Row("operator",
+           "how A is applied; auto is the quickest that keeps every digit, bf16 and int8 round the response")
+           .one_of(operator_words())
+           .otherwise("auto")
+           .option_of("reconstruct", "--operator", "NAME")
+           .stored(store_operator, show_operator),
+       choice_field<start_names, &Board::plan, &Plan::warm_start>(
+           "start", "warm, with pdhg: a frame goes on from the last one, unless it has changed too much")
+           .otherwise("cold")
+           .option_of("reconstruct", "--start", "NAME"),
+       field<&Board::plan, &Plan::threads>("threads", "that share a frame's work; pictures are the same bit for bit")
+           .within({1, recon::WorkerThreads::most})
+           .otherwise(1)
+           .option_of(all_that_solve, "--threads", "T")});
+}
+
+void add_what_no_board_says(std::vector<Setting>& all) {
+  add(all, {},
+      {choice_field<precision_names, &Board::plan, &Plan::precision>("precision", "of every number in the frame")
+           .option_of("reconstruct", "--precision", "NAME"),
+       field<&Board::plan, &Plan::rank>("rank",
+                                        "tsvd: how many singular values to keep (with --sigma: by rule); pdhg: how "
+                                        "many modes to treat exactly (400)")
+           .within({1, 1000000})
+           .option_of("reconstruct", "--rank", "R"),
+       field<&Board::objective, &Objective::epsilon>(
+           "epsilon", "adm: min ||Psi x||_1 subject to ||W^(1/2)(Ax-y)|| <= V; omp: stop there; in white pixels")
+           .within({0, 1e12})
+           .option_of("reconstruct", "--epsilon", "V"),
+       field<&Board::plan, &Plan::l1_reweighting>("reweight",
+                                                  "admm in pixels: as many iterations again with weights 2V / (|x| + "
+                                                  "V), for pictures of few lit pixels; V about a tenth of their "
+                                                  "brightness")
+           .within({1e-12, 1e12})
+           .option_of("reconstruct", "--reweight", "V")});
 }
 
 }  // namespace
 
 std::vector<Setting> reconstruction_settings() {
-  std::vector<Setting> rows;
-  for (const auto& part : {problem_rows(), weight_rows(), way_rows(), command_rows()}) {
-    rows.insert(rows.end(), part.begin(), part.end());
-  }
-  return rows;
+  std::vector<Setting> all;
+  add_problem(all);
+  add_weight(all);
+  add_way(all);
+  add_what_no_board_says(all);
+  return all;
 }
 
 }  // namespace compueye::firmware

@@ -210,10 +210,8 @@ std::span<const Section> sections() {
 
 std::span<const Setting> settings() {
   static const std::vector<Setting> rows = [] {
-    std::vector<Setting> all;
-    for (const auto& part : {eye_settings(), source_settings(), reconstruction_settings()}) {
-      all.insert(all.end(), part.begin(), part.end());
-    }
+    std::vector<Setting> all = eye_settings();
+    for (Setting& row : reconstruction_settings()) all.push_back(std::move(row));
     return all;
   }();
   return rows;

@@ -102,8 +102,7 @@ struct Setting {
 [[nodiscard]] std::string reference_table(std::string_view section);
 
 /// The parts of settings(), a file each.
-[[nodiscard]] std::vector<Setting> eye_settings();             // [board] [eye] [object] [sensor]
-[[nodiscard]] std::vector<Setting> reconstruction_settings();  // [reconstruction], and what only commands have
-[[nodiscard]] std::vector<Setting> source_settings();          // [source] [scene]
+[[nodiscard]] std::vector<Setting> eye_settings();             // everything but ...
+[[nodiscard]] std::vector<Setting> reconstruction_settings();  // ... [reconstruction], and what only commands have
 
 }  // namespace compueye::firmware
