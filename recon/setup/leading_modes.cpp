@@ -1,22 +1,14 @@
 #include "recon/setup/leading_modes.hpp"
 
-#include <Spectra/MatOp/DenseSymMatProd.h>
-#include <Spectra/SymEigsSolver.h>
-#include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
 
 #include "recon/setup/on_all_cores.hpp"
 #include "recon/setup/parity_gram.hpp"
+#include "recon/setup/symmetric_modes.hpp"
 
 namespace compueye::recon {
 namespace {
-
-struct Pairs {
-  Eigen::VectorXd values;  // largest first, one more than the vectors where there is one more
-  Eigen::MatrixXd vectors;
-};
 
 /// A class that keeps most of its modes is decomposed whole: Lanczos would have to find nearly all of them anyway.
 constexpr Eigen::Index whole_below = 200;
@@ -25,29 +17,17 @@ bool decomposes_whole(Eigen::Index order, Eigen::Index count) {
   return order <= whole_below || 3 * count > order;
 }
 
-Pairs whole(const Eigen::MatrixXd& gram, Eigen::Index count) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+/// The largest modes, largest first, and one more eigenvalue where there is one more. False when Lanczos did not
+/// settle.
+bool leading(const Eigen::MatrixXd& gram, Eigen::Index count, SymmetricModes& modes) {
+  if (!decomposes_whole(gram.rows(), count)) return largest_modes(gram, count, modes);
+  const SymmetricModes all = symmetric_modes(gram);
   const Eigen::Index values = std::min(count + 1, gram.rows());
-  return {eigen.eigenvalues().tail(values).reverse(), eigen.eigenvectors().rightCols(count).rowwise().reverse()};
-}
-
-/// False when Lanczos did not settle.
-bool leading(const Eigen::MatrixXd& gram, Eigen::Index count, Pairs& pairs) {
-  if (decomposes_whole(gram.rows(), count)) {
-    pairs = whole(gram, count);
-    return true;
-  }
-  Spectra::DenseSymMatProd<double> product(gram);
-  Spectra::SymEigsSolver<Spectra::DenseSymMatProd<double>> solver(product, count + 1, 2 * count + 20);
-  solver.init();
-  constexpr int most_restarts = 300;
-  constexpr double tolerance = 1e-9;
-  if (solver.compute(Spectra::SortRule::LargestAlge, most_restarts, tolerance) < count + 1) return false;
-  pairs = {solver.eigenvalues(), solver.eigenvectors().leftCols(count)};
+  modes = {all.values.tail(values).reverse(), all.vectors.rightCols(count).rowwise().reverse()};
   return true;
 }
 
-void append(const Pairs& pairs, std::size_t count, std::vector<float>& packed) {
+void append(const SymmetricModes& pairs, std::size_t count, std::vector<float>& packed) {
   const auto modes = static_cast<Eigen::Index>(count);
   for (Eigen::Index k = 0; k <= modes; ++k) {
     // A A' has no negative ones but by rounding.
@@ -80,7 +60,7 @@ hal::Result<std::vector<float>> leading_modes(const Response& seeing, int image_
   ParityGram gram(seeing, image_rows, image_cols, MetricKind::identity);
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
   const ParityClasses& classes = gram.classes();
-  std::vector<Pairs> pairs(classes.count());
+  std::vector<SymmetricModes> pairs(classes.count());
   std::atomic<bool> settled{true};
   const bool done = on_all_cores(static_cast<int>(classes.count()), "modes", progress, [&] {
     return [&](int c) {

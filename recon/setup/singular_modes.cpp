@@ -1,13 +1,14 @@
 #include "recon/setup/singular_modes.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "recon/number_text.hpp"
 #include "recon/setup/on_all_cores.hpp"
 #include "recon/setup/parity_gram.hpp"
+#include "recon/setup/symmetric_modes.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -67,9 +68,9 @@ hal::Result<ModeTable> singular_modes(const Response& seeing, int image_rows, in
     return [&](int c) {
       const auto at = static_cast<std::size_t>(c);
       if (gram.block(at).size() == 0) return;
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram.block(at));
-      squares[at] = eigen.eigenvalues();
-      gram.block(at) = eigen.eigenvectors();
+      SymmetricModes modes = symmetric_modes(gram.block(at));
+      squares[at] = std::move(modes.values);
+      gram.block(at) = std::move(modes.vectors);
     };
   });
   if (!done) return hal::fail(hal::ErrorCode::interrupted, "set-up", "stopped before the singular values were found");

@@ -1,7 +1,9 @@
 #include "recon/setup/thin_step_tables.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
+
+#include "recon/setup/symmetric_modes.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -70,18 +72,19 @@ Matrix class_of(const Matrix& a, const std::vector<double>& signs, const ThinSte
 template <class T>
 void fill_lane(const Matrix& a, const std::vector<double>& penalties, std::size_t lane, std::size_t lanes, T* turned,
                ThinStepTables<T>& tables) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> modes(a * a.transpose());
+  const SymmetricModes modes = symmetric_modes(a * a.transpose());
+  const Matrix rotation = modes.vectors;
   const auto put = [&](const Matrix& m, T* first) {
     for (Eigen::Index k = 0; k < m.size(); ++k) {
       first[static_cast<std::size_t>(k) * lanes + lane] = static_cast<T>(m.data()[k]);
     }
   };
-  put(modes.eigenvectors(), tables.rotation.data());
-  put(modes.eigenvectors().transpose() * a, turned);
+  put(rotation, tables.rotation.data());
+  put(rotation.transpose() * a, turned);
   T* gain = tables.gains.data();
   for (const double penalty : penalties) {
     for (Eigen::Index k = 0; k < a.rows(); ++k, gain += lanes) {
-      gain[lane] = static_cast<T>(1.0 / (std::max(modes.eigenvalues()[k], 0.0) + penalty));
+      gain[lane] = static_cast<T>(1.0 / (std::max(modes.values[k], 0.0) + penalty));
     }
   }
 }
