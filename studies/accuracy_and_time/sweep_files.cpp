@@ -21,14 +21,13 @@
 namespace compueye::firmware {
 namespace {
 
-namespace fs = std::filesystem;
 using hal::ErrorCode;
 using hal::Result;
 
 constexpr int not_started = 127;
 
 /// Its exit code, 127 when there is none to start.
-int run_gnuplot(const fs::path& folder, const std::string& script) {
+int run_gnuplot(const std::string& folder, const std::string& script) {
   std::string program = "gnuplot", argument = script;
   std::array<char*, 3> words{program.data(), argument.data(), nullptr};
   posix_spawn_file_actions_t actions;
@@ -45,11 +44,11 @@ int run_gnuplot(const fs::path& folder, const std::string& script) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
-Result<void> publish(const fs::path& folder, const std::string& name) {
+Result<void> publish(const std::string& file) {
   std::error_code ec;
-  fs::rename(folder / (name + ".partial"), folder / name, ec);
+  std::filesystem::rename(file + ".partial", file, ec);
   if (!ec) return {};
-  return hal::fail(ErrorCode::io, (folder / name).string(), "was not drawn by gnuplot: " + ec.message());
+  return hal::fail(ErrorCode::io, file, "was not drawn by gnuplot: " + ec.message());
 }
 
 constexpr const char* header =
@@ -107,22 +106,21 @@ std::string plot_stem(const NoiseLevel& level) {
   return "pareto-noise-" + fmt::format("{:g}", level.times);
 }
 
-Result<bool> write_plots(const std::string& to, const Sweep& sweep) {
-  const fs::path folder = to;
+Result<bool> write_plots(const std::string& folder, const Sweep& sweep) {
   bool drawn = true;
   for (std::size_t level = 0; level < sweep.levels.size(); ++level) {
-    const std::string stem = plot_stem(sweep.levels[level]);
-    const std::string script = gnuplot_script(sweep, level, stem), name = stem + ".gnuplot";
-    TRY(write_file_atomically(folder / name, std::as_bytes(std::span(script))));
+    const std::string stem = plot_stem(sweep.levels[level]), file = folder + '/' + stem;
+    const std::string script = gnuplot_script(sweep, level, stem);
+    TRY(write_file_atomically(file + ".gnuplot", std::as_bytes(std::span(script))));
     // Without gnuplot the other scripts are worth having all the same.
-    const int code = drawn ? run_gnuplot(folder, name) : not_started;
+    const int code = drawn ? run_gnuplot(folder, stem + ".gnuplot") : not_started;
     drawn = code != not_started;
     if (!drawn) continue;
     if (code != 0) {
-      return hal::fail(ErrorCode::io, (folder / name).string(),
+      return hal::fail(ErrorCode::io, file + ".gnuplot",
                        fmt::format("gnuplot ended with exit code {}; pareto.csv has every point", code));
     }
-    for (const char* ending : {".svg", ".png"}) TRY(publish(folder, stem + ending));
+    for (const char* ending : {".svg", ".png"}) TRY(publish(file + ending));
   }
   return drawn;
 }
