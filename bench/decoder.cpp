@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bench/bandwidth.hpp"
+#include "bench/json_text.hpp"
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
 #include "drivers/protocol/crc32c.hpp"
@@ -21,7 +22,6 @@
 #include "drivers/protocol/packet_encoder.hpp"
 #include "drivers/protocol/packet_stream.hpp"
 #include "drivers/protocol/sample_format.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
 
 using namespace compueye;
@@ -158,7 +158,7 @@ std::string text_of(const Measured& measured) {
 }
 
 std::string json_of(const Measured& measured) {
-  firmware::Json json;
+  bench::Json json;
   json["read_bandwidth_gigabytes_per_second"] = measured.bandwidth;
   json["crc_by_instruction"] = measured.hardware_crc;
   for (const Timed& t : measured.work) {
@@ -167,7 +167,7 @@ std::string json_of(const Measured& measured) {
                             {"share_of_read_bandwidth", t.gigabytes_per_second / measured.bandwidth},
                             {"frame_us", t.frame_us}});
   }
-  return firmware::json_text(json);
+  return bench::json_text(json);
 }
 
 }  // namespace

@@ -10,9 +10,9 @@
 
 #include "bench/bandwidth.hpp"
 #include "bench/eyes.hpp"
+#include "bench/json_text.hpp"
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/core/bases/dct.hpp"
@@ -203,8 +203,8 @@ std::string table_text(const bench::Eye& eye, const std::vector<Part>& parts, do
   return table.text() + "\n";
 }
 
-firmware::Json json_of(const bench::Eye& eye, const std::vector<Part>& parts) {
-  firmware::Json json;
+bench::Json json_of(const bench::Eye& eye, const std::vector<Part>& parts) {
+  bench::Json json;
   json["eye"] = eye.name;
   for (const Part& part : parts) {
     json["parts"].push_back({{"name", part.name},
@@ -239,10 +239,10 @@ std::string whole_text(const Measured& measured) {
 }
 
 std::string whole_json(const Measured& measured) {
-  firmware::Json json;
+  bench::Json json;
   json["read_bandwidth_gigabytes_per_second"] = measured.bandwidth;
   for (const auto& [eye, parts] : measured.eyes) json["eyes"].push_back(json_of(eye, parts));
-  return firmware::json_text(json);
+  return bench::json_text(json);
 }
 
 }  // namespace

@@ -12,10 +12,10 @@
 #include "bench/bandwidth.hpp"
 #include "bench/eigen_baseline.hpp"
 #include "bench/eyes.hpp"
+#include "bench/json_text.hpp"
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
 #include "calib/plausible_response.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/core/operators/linear_operator.hpp"
@@ -210,8 +210,8 @@ std::string table_text(const MeasuredEye& eye, double bandwidth) {
   return table.text() + "\n";
 }
 
-firmware::Json json_of(const MeasuredEye& eye, double bandwidth) {
-  firmware::Json json;
+bench::Json json_of(const MeasuredEye& eye, double bandwidth) {
+  bench::Json json;
   json["eye"] = eye.name;
   for (const Timed& t : eye.timed) {
     json["representations"].push_back({{"name", t.name},
@@ -246,10 +246,10 @@ std::string whole_text(const Measured& measured) {
 }
 
 std::string whole_json(const Measured& measured) {
-  firmware::Json json;
+  bench::Json json;
   json["read_bandwidth_gigabytes_per_second"] = measured.bandwidth;
   for (const MeasuredEye& eye : measured.eyes) json["eyes"].push_back(json_of(eye, measured.bandwidth));
-  return firmware::json_text(json);
+  return bench::json_text(json);
 }
 
 }  // namespace

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "bench/eyes.hpp"
+#include "bench/json_text.hpp"
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
 #include "calib/nominal.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/metrics.hpp"
@@ -120,7 +120,7 @@ std::string table_text(const std::vector<Figures>& all) {
 }
 
 std::string json_text(const std::vector<Figures>& all) {
-  firmware::Json json;
+  bench::Json json;
   json["scenes"] = scenes;
   json["dots"] = dots;
   json["lambda"] = lambda;
@@ -133,7 +133,7 @@ std::string json_text(const std::vector<Figures>& all) {
                                 {"median_iterations", f.iterations[w]}});
     }
   }
-  return firmware::json_text(json);
+  return bench::json_text(json);
 }
 
 }  // namespace

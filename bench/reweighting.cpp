@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "bench/eyes.hpp"
+#include "bench/json_text.hpp"
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/lambda_rule.hpp"
@@ -160,7 +160,7 @@ std::string table_text(const std::vector<Figures>& all) {
 }
 
 std::string json_text(const std::vector<Figures>& all) {
-  firmware::Json json;
+  bench::Json json;
   json["eye"] = "80x80";
   json["iterations"] = iterations;
   json["frames"] = frames;
@@ -171,7 +171,7 @@ std::string json_text(const std::vector<Figures>& all) {
                                {"ratio", f.median_ms / all.front().median_ms},
                                {"relative_error", f.relative_error}});
   }
-  return firmware::json_text(json);
+  return bench::json_text(json);
 }
 
 }  // namespace

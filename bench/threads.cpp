@@ -14,10 +14,10 @@
 #include "bench/bandwidth.hpp"
 #include "bench/core_distance.hpp"
 #include "bench/eyes.hpp"
+#include "bench/json_text.hpp"
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
 #include "calib/plausible_response.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/core/operators/linear_operator.hpp"
@@ -172,14 +172,14 @@ std::string text_of(const Measured& measured) {
 }
 
 std::string json_of(const Measured& measured) {
-  firmware::Json json;
+  bench::Json json;
   json["read_bandwidth_gigabytes_per_second"] = measured.bandwidth;
   json["core_round_trip_before_ns"] = measured.round_trip_before_ns;
   json["core_round_trip_after_ns"] = measured.round_trip_after_ns;
   for (const Shared& s : measured.work) {
     json["work"].push_back({{"name", s.name}, {"one_thread_us", s.alone_us}, {"two_threads_us", s.by_two_us}});
   }
-  return firmware::json_text(json);
+  return bench::json_text(json);
 }
 
 }  // namespace

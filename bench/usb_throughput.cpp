@@ -18,13 +18,13 @@
 #include <utility>
 #include <vector>
 
+#include "bench/json_text.hpp"
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
 #include "drivers/protocol/frame_assembler.hpp"
 #include "drivers/protocol/packet_encoder.hpp"
 #include "drivers/protocol/packet_stream.hpp"
 #include "drivers/transport/usb_libusb.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
 #include "hal/clock.hpp"
 #include "tests/hil/emulated_usbfs.hpp"
@@ -216,7 +216,7 @@ std::string text_of(const Measured& measured) {
 }
 
 std::string json_of(const Measured& measured) {
-  firmware::Json json;
+  bench::Json json;
   json["transfers"] = measured.transfers;
   json["transfer_bytes"] = measured.transfer_bytes;
   json["frame_bytes"] = frame_bytes;
@@ -228,7 +228,7 @@ std::string json_of(const Measured& measured) {
                             {"most_in_flight_transfers", each.most_in_flight},
                             {"heap_growth_kib", each.heap_growth_kib}});
   }
-  return firmware::json_text(json);
+  return bench::json_text(json);
 }
 
 }  // namespace

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "bench/eyes.hpp"
+#include "bench/json_text.hpp"
 #include "bench/print_measured.hpp"
 #include "bench/timing.hpp"
 #include "calib/nominal.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/lambda_rule.hpp"
@@ -171,7 +171,7 @@ std::string table_text(const std::vector<Line>& lines) {
 }
 
 std::string json_of(const std::vector<Line>& lines) {
-  firmware::Json json = firmware::Json::array();
+  bench::Json json = bench::Json::array();
   for (const Line& l : lines) {
     json.push_back({{"scene", l.scene},
                     {"motion", l.motion},
@@ -183,7 +183,7 @@ std::string json_of(const std::vector<Line>& lines) {
                     {"warm_frames", l.warm_frames},
                     {"frames", l.counted}});
   }
-  return firmware::json_text(json);
+  return bench::json_text(json);
 }
 
 }  // namespace

@@ -13,10 +13,10 @@
 #include "bench/convergence/cases.hpp"
 #include "bench/convergence/first_order_baseline.hpp"
 #include "bench/convergence/trial.hpp"
+#include "bench/json_text.hpp"
 #include "bench/timing.hpp"
 #include "calib/nominal.hpp"
 #include "calib/plausible_response.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/text/table.hpp"
 #include "recon/option_names.hpp"
 
@@ -115,8 +115,8 @@ void print_baseline(const bench::FirstOrderBaseline& b) {
   fmt::print("{}", table.text());
 }
 
-firmware::Json json_of(const bench::FirstOrderBaseline& b) {
-  firmware::Json json{{"noise", b.noise}, {"iterations", b.ours}, {"ms", b.ours_ms}, {"nmse", b.nmse}};
+bench::Json json_of(const bench::FirstOrderBaseline& b) {
+  bench::Json json{{"noise", b.noise}, {"iterations", b.ours}, {"ms", b.ours_ms}, {"nmse", b.nmse}};
   for (const bench::Contestant& c : b.contestants) {
     json["contestants"].push_back({{"name", c.name},
                                    {"iterations", c.iterations},
@@ -128,19 +128,19 @@ firmware::Json json_of(const bench::FirstOrderBaseline& b) {
   return json;
 }
 
-firmware::Json json_of(const Measured& m) {
-  firmware::Json json{{"frame", m.of.name},
-                      {"operator", m.op},
-                      {"iterations", m.iterations},
-                      {"ms", m.ms},
-                      {"asked_ms", m.of.asked_ms},
-                      {"aimed_ms", m.of.aimed_ms},
-                      {"objective_excess", m.excess},
-                      {"converged_nmse_mean", m.curve.converged.mean},
-                      {"converged_nmse_90", m.curve.converged.high},
-                      {"table_bytes", m.table_bytes},
-                      {"workspace_bytes", m.workspace_bytes},
-                      {"set_up_s", m.set_up_s}};
+bench::Json json_of(const Measured& m) {
+  bench::Json json{{"frame", m.of.name},
+                   {"operator", m.op},
+                   {"iterations", m.iterations},
+                   {"ms", m.ms},
+                   {"asked_ms", m.of.asked_ms},
+                   {"aimed_ms", m.of.aimed_ms},
+                   {"objective_excess", m.excess},
+                   {"converged_nmse_mean", m.curve.converged.mean},
+                   {"converged_nmse_90", m.curve.converged.high},
+                   {"table_bytes", m.table_bytes},
+                   {"workspace_bytes", m.workspace_bytes},
+                   {"set_up_s", m.set_up_s}};
   for (const bench::Reached& r : m.curve.reached) {
     json["curve"].push_back(
         {{"iterations", r.iterations}, {"nmse_mean", r.mean}, {"nmse_90", r.high}, {"excess", r.excess}});
@@ -165,7 +165,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   const double bandwidth = bench::read_bandwidth();
   std::vector<Measured> all;
-  firmware::Json report{{"read_bandwidth_gigabytes_per_second", bandwidth}};
+  bench::Json report{{"read_bandwidth_gigabytes_per_second", bandwidth}};
   for (bench::FrameCase c : bench::frame_cases()) {
     if (c.name.find(only) == std::string::npos) continue;
     c.plan.rho = rho;
@@ -192,6 +192,6 @@ int main(int argc, char** argv) {
       if (!json) print_baseline(b);
     }
   }
-  if (json) fmt::print("{}", firmware::json_text(report));
+  if (json) fmt::print("{}", bench::json_text(report));
   return 0;
 }

@@ -10,8 +10,6 @@
 #include <system_error>
 #include <utility>
 
-#include "firmware/app/report/error_report.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/text/visible_text.hpp"
 
 namespace compueye::firmware {
@@ -115,7 +113,7 @@ void Session::leave() {
   for (const std::string& each : parts_) fs::remove(each, ignored);
   // A progress line may still be open.
   if (isatty(STDERR_FILENO) == 1) std::fputc('\n', stderr);
-  if (json_) static_cast<void>(print_text(json_text(json_of(stopped()))));
+  if (json_) static_cast<void>(print_text(with_error("{}", stopped())));
   std::_Exit(print_error(stopped()));
 }
 
@@ -144,7 +142,7 @@ hal::Result<void> Session::print(const std::string& text, std::string json) {
 
 hal::Result<void> Session::print_json(const hal::Result<void>& done) const {
   if (done) return report_.empty() ? hal::Result<void>{} : print_text(report_);
-  return print_text(report_.empty() ? json_text(json_of(done.error())) : with_error(report_, done.error()));
+  return print_text(with_error(report_.empty() ? "{}" : report_, done.error()));
 }
 
 int Session::end(hal::Result<void> done) {

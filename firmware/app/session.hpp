@@ -12,7 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "firmware/app/report/progress_reporter.hpp"
+#include "firmware/app/progress_reporter.hpp"
+#include "firmware/app/report.hpp"
 #include "hal/clock.hpp"
 #include "hal/result.hpp"
 #include "recon/setup/factor.hpp"
@@ -72,6 +73,10 @@ class Session {
   /// The report of the command, which prints one only: `text` at once, or `json` when the command has ended, with a
   /// failure after it as its member "error". Error io or no_space when standard output refuses it.
   [[nodiscard]] hal::Result<void> print(const std::string& text, std::string json = {});
+  [[nodiscard]] hal::Result<void> print(const std::string& text, const Figures& figures) {
+    return print(text, figures.json());
+  }
+  [[nodiscard]] hal::Result<void> print(const Figures& figures) { return print(figures.text(), figures.json()); }
   /// Ends the command: its failure as a sentence on stderr and, with --json, as an object on stdout. What main()
   /// returns: 0, 1 (failed) or 2 (wrong usage).
   [[nodiscard]] int end(hal::Result<void> done);

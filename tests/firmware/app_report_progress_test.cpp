@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "firmware/app/report/progress_reporter.hpp"
+#include "firmware/app/progress_reporter.hpp"
 #include "hal/clock.hpp"
 
 using namespace compueye;

@@ -2,14 +2,16 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "firmware/app/report/error_report.hpp"
-#include "firmware/app/report/json_report.hpp"
+#include "firmware/app/report.hpp"
 #include "firmware/text/nearest_name.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
@@ -17,6 +19,7 @@
 
 using namespace compueye;
 using namespace compueye::firmware;
+using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -150,14 +153,13 @@ TEST_CASE("a table without rows or columns is still well formed") {
   CHECK(Table({}).add({"1", "2"}).text() == "\n-  -\n1  2\n");
 }
 
-TEST_CASE("JSON output is valid whatever the object holds") {
-  Json object;
-  object["nmse"] = not_a_number;
-  object["psnr_db"] = infinite;
-  object["list"] = {1.5, -infinite};
-  object["file"] = "bad \xff utf-8";
-  object["last"] = 1;
-  const std::string text = json_text(object);
+TEST_CASE("JSON output is valid whatever the figures hold") {
+  Figures figures;
+  figures.add("nmse", not_a_number).add("psnr_db", infinite).add("list", std::vector<double>{1.5, -infinite});
+  figures.add("file", "bad \xff utf-8").add("none", std::optional<int>());
+  figures.add("inner", Figures{{"yes", true}, {"below", -1}, {"above", std::numeric_limits<std::uint64_t>::max()}});
+  figures.add("last", 1);
+  const std::string text = figures.json();
   CHECK(text.ends_with("}\n"));
   const Json back = Json::parse(text, nullptr, false);
   REQUIRE_FALSE(back.is_discarded());
@@ -166,8 +168,19 @@ TEST_CASE("JSON output is valid whatever the object holds") {
   CHECK(back["list"][0] == 1.5);
   CHECK(back["list"][1].is_null());
   CHECK(back["file"] == "bad \xef\xbf\xbd utf-8");
+  CHECK(back["none"].is_null());
+  CHECK(back["inner"]["yes"] == true);
+  CHECK(back["inner"]["below"] == -1);
+  CHECK(back["inner"]["above"] == std::numeric_limits<std::uint64_t>::max());
   CHECK(back.begin().key() == "nmse");
   CHECK((--back.end()).key() == "last");
+}
+
+TEST_CASE("a figure is said once, to people and to programs") {
+  Figures figures;
+  figures.add("rows", "rows", "1,600", 1600).add("only", "not shown").line("note", "not counted");
+  CHECK(figures.text() == "figure  value\n------  -----------\nrows    1,600\nnote    not counted\n");
+  CHECK(Json::parse(figures.json()) == Json{{"rows", 1600}, {"only", "not shown"}});
 }
 
 TEST_CASE("an account becomes JSON with every reason") {
@@ -175,19 +188,19 @@ TEST_CASE("an account becomes JSON with every reason") {
   account.produced = 10;
   account.delivered = 7;
   account.drops(hal::DropReason::superseded) = 2;
-  Json json = json_of(account);
-  REQUIRE(json.is_object());
+  const Json json = Json::parse(figures_of(account).json());
   CHECK(json["produced"] == 10);
   CHECK(json["dropped"].size() == hal::drop_reason_count);
   CHECK(json["dropped"][std::string(hal::name(hal::DropReason::superseded))] == 2);
   CHECK(json["balanced"] == false);
   account.drops(hal::DropReason::stopped) = 1;
-  CHECK(json_of(account)["balanced"] == true);
+  CHECK(Json::parse(figures_of(account).json())["balanced"] == true);
 }
 
-TEST_CASE("an error becomes JSON") {
-  const Json json = json_of(hal::Error{hal::ErrorCode::stale, "f.eye", "made from another A"});
-  REQUIRE(json.is_object());
+TEST_CASE("an error becomes a member of what was reported before it") {
+  const hal::Error error{hal::ErrorCode::stale, "f.eye", "made from another A"};
+  const Json json = Json::parse(with_error(Figures{{"frames", 3}}.json(), error));
+  CHECK(json["frames"] == 3);
   CHECK(json["error"]["code"] == hal::name(hal::ErrorCode::stale));
   CHECK(json["error"]["place"] == "f.eye");
   CHECK(json["error"]["sentence"] == "made from another A");

@@ -1,11 +1,117 @@
-#include "firmware/app/inspect/inspect.hpp"
+#include "firmware/app/commands/inspect.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
 #include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
 
 #include "firmware/app/command.hpp"
+#include "firmware/eye/board.hpp"
+#include "firmware/files/matrix_market.hpp"
+#include "firmware/files/npy.hpp"
+#include "firmware/files/npy_header.hpp"
+#include "firmware/text/number_text.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
+
+namespace fs = std::filesystem;
+using hal::ErrorCode;
+using hal::fail;
+using hal::Result;
+
+/// The command line of `compueye inspect`.
+struct InspectRequest {
+  std::string what;         ///< a .npy or .mtx file, a board's folder or its board.toml
+  std::string as = "auto";  ///< auto, array or response; for .npy
+  std::string size;         ///< "HxW" of the picture behind a response; empty: unknown
+};
+
+/// Shape, range and mean of the finite elements, and how many are NaN or infinite.
+void add_array_figures(const NpyArray& array, Figures& figures) {
+  double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0.0;
+  std::int64_t finite = 0;
+  for (const double value : array.values) {
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+    sum += value;
+    ++finite;
+  }
+  const auto non_finite = static_cast<std::int64_t>(array.values.size()) - finite;
+  figures.add("shape", "shape", shape_text(array.shape), array.shape);
+  if (finite > 0) {
+    figures.add("min", "smallest", significant(least, 6), least);
+    figures.add("max", "largest", significant(most, 6), most);
+    figures.add("mean", "mean", significant(sum / static_cast<double>(finite), 6), sum / static_cast<double>(finite));
+  }
+  figures.add("non_finite", "NaN or infinite", grouped(non_finite), non_finite);
+}
+
+Result<void> inspect_board(const InspectRequest& o, const recon::Progress& progress, Figures& figures) {
+  figures.add("kind", "board");
+  return add_board_figures(TRY(load_board(o.what)), progress, figures);
+}
+
+Result<void> inspect_matrix(const InspectRequest& o, const recon::Progress& progress, Figures& figures) {
+  figures.add("kind", "response");
+  return add_response_figures(TRY(read_matrix_market(o.what)), picture_size_from(o.size), progress, figures);
+}
+
+/// Two axes may be a response, samples or a picture; the figures of a response do no harm to the others.
+bool is_response(const InspectRequest& o, const NpyArray& array) {
+  if (o.as == "response") return true;
+  return o.as == "auto" && array.shape.size() == 2 && !first_non_finite(array.values);
+}
+
+Result<void> inspect_array(const InspectRequest& o, const recon::Progress& progress, Figures& figures) {
+  NpyArray array = TRY(o.as == "response" ? read_matrix(o.what) : read_npy(o.what, 1, 3));
+  const bool response = is_response(o, array);
+  figures.add("kind", response ? "response" : "array");
+  add_array_figures(array, figures);
+  if (!response) return {};
+  const bool fits = std::all_of(array.shape.begin(), array.shape.end(),
+                                [](std::int64_t n) { return n <= std::numeric_limits<int>::max(); });
+  if (!fits) return {};
+  auto matrix = recon::Response::from_dense(static_cast<int>(array.shape[0]), static_cast<int>(array.shape[1]),
+                                            std::move(array.values));
+  if (!matrix) {
+    matrix.error().place = o.what;
+    return tl::unexpected(std::move(matrix.error()));
+  }
+  return add_response_figures(*matrix, picture_size_from(o.size), progress, figures);
+}
+
+Result<void> add_figures(const InspectRequest& o, const recon::Progress& progress, Figures& figures) {
+  const fs::path path(o.what);
+  const std::string ending = path.extension().string();
+  std::error_code error;
+  if (fs::is_directory(path, error) || ending == ".toml") return inspect_board(o, progress, figures);
+  if (ending == ".npy") return inspect_array(o, progress, figures);
+  if (ending == ".mtx") return inspect_matrix(o, progress, figures);
+  if (!fs::exists(path, error)) {
+    return fail(ErrorCode::not_found, o.what, "does not exist, expected a .npy or .mtx file or a board's folder");
+  }
+  return fail(ErrorCode::usage, o.what,
+              (ending.empty() ? "has no extension" : "ends in '" + ending + "'") +
+                  ", expected a .npy or .mtx file or a board's folder");
+}
+
+Result<void> inspect(const InspectRequest& o, Session& session) {
+  Figures figures;
+  figures.add("file", "file", o.what, o.what);
+  const auto done = add_figures(o, session.progress(), figures);
+  session.end_progress();
+  TRY(session.check_stop());
+  TRY(done);
+  return session.print(figures);
+}
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<InspectRequest>();

@@ -1,11 +1,205 @@
-#include "firmware/app/reconstruct/reconstruct.hpp"
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "firmware/app/command.hpp"
+#include "firmware/app/commands/reconstruct_files.hpp"
+#include "firmware/app/commands/reconstruct_options.hpp"
+#include "firmware/app/commands/reconstruct_report.hpp"
+#include "firmware/files/response_file.hpp"
+#include "hal/try.hpp"
+#include "recon/aligned_workspace.hpp"
+#include "recon/lambda_by_risk.hpp"
+#include "recon/lambda_rule.hpp"
 
 namespace compueye::firmware {
 namespace {
+
+using hal::ErrorCode;
+using hal::fail;
+using hal::Result;
+
+/// What was read, ready for the solver.
+struct Inputs {
+  std::optional<recon::Response> response;  // rows scaled by the weights
+  FrameInputs frames;
+  std::optional<Truth> truth;
+};
+
+Result<void> check_size(const ReconstructOptions& o, const recon::Response& response, PictureSize size) {
+  const int pixels = size.rows * size.cols;
+  if (pixels == response.cols()) return {};
+  const int side = static_cast<int>(std::lround(std::sqrt(response.cols())));
+  const std::string hint = side * side == response.cols() ? fmt::format(", for example {0}x{0}", side) : "";
+  return fail(ErrorCode::mismatch, "--size",
+              fmt::format("{} has {} pixels, expected {} as {} has columns{}", o.size, pixels, response.cols(),
+                          o.response, hint));
+}
+
+Result<void> check_sees(const ReconstructOptions& o, const recon::Response& response, bool weighted) {
+  if (!response.seeing_rows().empty()) return {};
+  return fail(ErrorCode::out_of_range, o.response,
+              weighted ? "has no row with a non-zero entry and a weight above 0, expected a channel that sees something"
+                       : "has no row with a non-zero entry, expected an eye that sees something");
+}
+
+/// The factor and the penalty come from squares of the entries.
+Result<void> check_range(const ReconstructOptions& o, const recon::Response& response) {
+  const auto values = response.values();
+  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  const double limit =
+      o.precision == "f64" ? std::numeric_limits<double>::max() : double{std::numeric_limits<float>::max()};
+  if (squares <= limit) return {};
+  return fail(ErrorCode::out_of_range, o.response,
+              fmt::format("has entries so large that their squares (with the weights) add up to {:.3g}, expected "
+                          "entries around 0 to 1, the share of a pixel that a channel sees",
+                          squares));
+}
+
+Result<Inputs> read_inputs(const ReconstructOptions& o, PictureSize size, const Session& session) {
+  Inputs inputs;
+  recon::Response response = TRY(read_response(o.response));
+  TRY(session.check_stop());
+  TRY(check_size(o, response, size));
+  TRY(check_sees(o, response, false));
+  inputs.frames = TRY(read_frame_inputs(response, o.samples, o.weights));
+  inputs.response = scaled_response(std::move(response), inputs.frames);
+  TRY(check_sees(o, *inputs.response, true));
+  TRY(check_range(o, *inputs.response));
+  if (!o.truth.empty()) inputs.truth = TRY(Truth::read(o.truth, size, inputs.frames.frames));
+  return inputs;
+}
+
+/// The risk is known for samples that all carry the same noise.
+Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, const ProblemStatement& problem,
+                                                const Inputs& inputs, const recon::Progress& progress) {
+  const auto weights = inputs.frames.weights_of(0);
+  if (std::any_of(weights.begin(), weights.end(), [](float w) { return w != 1.0F; })) {
+    return fail(ErrorCode::unsupported, "--lambda-from-samples",
+                "needs a first frame whose weights are the largest of every channel, expected --weights of shape (M,) "
+                "or a complete first frame");
+  }
+  auto found = recon::lambda_by_risk(*inputs.response, problem.size.rows, problem.size.cols, problem.objective,
+                                     problem.plan, inputs.frames.samples_of(0), *o.sigma, std::nullopt, progress);
+  if (!found && found.error().code != ErrorCode::interrupted) found.error().place = o.samples;
+  return found;
+}
+
+/// The solver knows of lambda and response, people of the options and files behind them.
+std::string place_of(const ReconstructOptions& o, const std::string& place) {
+  if (place == "operator") return "--operator";
+  if (o.rank && place == "rank") return "--rank";
+  if (o.rho && place == "rho") return "--rho";
+  if (o.lambda && place == "lambda") return "--lambda";
+  return o.response;
+}
+
+Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatement problem, const Inputs& inputs,
+                                    const recon::Progress& progress) {
+  const recon::Response& a = *inputs.response;
+  problem.objective.lambda = o.lambda.value_or(0.0);
+  problem.plan.max_reweighted = inputs.frames.max_reweighted;
+  if (o.sigma) {
+    problem.objective.lambda = TRY(recon::lambda_by_rule(a, problem.size.rows, problem.size.cols, problem.plan.solver,
+                                                         problem.objective.basis, *o.sigma));
+  }
+  std::optional<recon::Factor> factor;
+  if (o.lambda_from_samples) {
+    recon::LambdaByRisk found = TRY(lambda_from_samples(o, problem, inputs, progress));
+    problem.objective.lambda = found.lambda;
+    factor = std::move(found.factor);
+  }
+  auto made = recon::Reconstructor::create(a, problem.size.rows, problem.size.cols, problem.objective, problem.plan,
+                                           std::move(factor), progress);
+  if (!made && made.error().code != ErrorCode::interrupted) made.error().place = place_of(o, made.error().place);
+  return made;
+}
+
+ReconstructReport report_of(const ReconstructOptions& o, const recon::Reconstructor& reconstructor,
+                            const FrameInputs& frames) {
+  ReconstructReport report;
+  report.options = o;
+  report.objective = reconstructor.objective();
+  report.plan = reconstructor.plan();
+  report.point = reconstructor.operating_point();
+  report.frames = frames.frames;
+  report.channels = reconstructor.channels();
+  report.seeing_channels = reconstructor.seeing_channels();
+  report.size = {reconstructor.image_rows(), reconstructor.image_cols()};
+  report.table_bytes = reconstructor.table_bytes();
+  report.workspace_bytes = reconstructor.required_bytes();
+  return report;
+}
+
+Result<void> check_health(const recon::FrameInfo& info, std::int64_t frame) {
+  if (info.health != recon::Health::invalid) return {};
+  return hal::fail(hal::ErrorCode::out_of_range, fmt::format("frame {}", frame),
+                   "could not be reconstructed, its numbers left the range of the solver, expected samples in white "
+                   "pixels; check the units of the response and the samples, or try --precision f64");
+}
+
+/// Solves every frame in order and hands the pictures to `outputs`. Errors: interrupted; out_of_range when a frame's
+/// numbers leave the range of the precision, named by frame; those of `outputs`.
+Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& reconstructor,
+                                                    const FrameInputs& inputs, const Truth* truth,
+                                                    PictureOutputs& outputs, Session& session) {
+  const recon::AlignedWorkspace workspace(reconstructor.required_bytes());
+  std::vector<float> picture(static_cast<std::size_t>(reconstructor.pixels()));
+  std::vector<FrameRecord> records;
+  records.reserve(static_cast<std::size_t>(inputs.frames));
+  const recon::Progress progress = session.progress();
+  const auto tell = [&](std::int64_t done) {
+    progress("reconstructing", static_cast<double>(done), static_cast<double>(inputs.frames));
+  };
+  for (std::int64_t f = 0; f < inputs.frames; ++f) {
+    tell(f);
+    FrameRecord record;
+    const std::int64_t began_ns = session.clock().now_ns();
+    record.info = reconstructor.solve(inputs.samples_of(f), inputs.weights_of(f), workspace.span(), picture);
+    record.solve_ms = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-6;
+    TRY(session.check_stop());
+    TRY(check_health(record.info, f));
+    TRY(outputs.add(picture));
+    if (truth != nullptr) record.quality = TRY(truth->compare(f, picture));
+    records.push_back(record);
+  }
+  tell(inputs.frames);
+  session.end_progress();
+  return records;
+}
+
+/// Samples from a file become pictures in files, and a report on stdout. Either every output appears or none.
+Result<void> reconstruct(const ReconstructOptions& o, Session& session) {
+  const ProblemStatement problem = TRY(problem_of(o));
+  Inputs inputs = TRY(read_inputs(o, problem.size, session));
+  PictureOutputs outputs = TRY(PictureOutputs::create(
+      {o.out, o.png, problem.size, inputs.frames.frames, inputs.frames.has_frame_axis}, session));
+
+  const std::int64_t began_ns = session.clock().now_ns();
+  auto made = set_up(o, problem, inputs, session.progress());
+  session.end_progress();
+  TRY(session.check_stop());
+  const recon::Reconstructor reconstructor = TRY(std::move(made));
+  ReconstructReport report = report_of(o, reconstructor, inputs.frames);
+  report.setup_s = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-9;
+  inputs.response.reset();
+
+  report.records =
+      TRY(reconstruct_frames(reconstructor, inputs.frames, inputs.truth ? &*inputs.truth : nullptr, outputs, session));
+  TRY(session.seal());
+  TRY(outputs.commit());
+  return session.print(report_figures(report));
+}
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<ReconstructOptions>();

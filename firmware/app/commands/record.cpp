@@ -9,8 +9,7 @@
 
 #include "drivers/recording/recording_source.hpp"
 #include "firmware/app/command.hpp"
-#include "firmware/app/recording/recorded_with.hpp"
-#include "firmware/app/report/json_report.hpp"
+#include "firmware/app/commands/recorded_with.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/source_list.hpp"
@@ -125,8 +124,8 @@ std::string text_of(const Board& board, const std::string& scene, const Recordin
   return text;
 }
 
-Json report_json(const Board& board, const std::string& scene, const RecordingSource& source,
-                 const Recorded& recorded) {
+Figures report_of(const Board& board, const std::string& scene, const RecordingSource& source,
+                  const Recorded& recorded) {
   return {{"file", source.path()},
           {"board", board.name},
           {"scene", scene},
@@ -136,7 +135,7 @@ Json report_json(const Board& board, const std::string& scene, const RecordingSo
           {"file_bytes", source.bytes()},
           {"wall_s", recorded.seconds},
           {"ending", recorded.ending},
-          {"frames", json_of(recorded.account)}};
+          {"frames", figures_of(recorded.account)}};
 }
 
 /// Records a board's eye until there are enough frames, the time is over, the user stops it or the file fails; what was
@@ -158,8 +157,7 @@ Result<void> record(const RecordRequest& o, Session& session) {
   const auto source = TRY(RecordingSource::create(std::move(settings), *eye, session.clock()));
   TRY(source->start());
   const Recorded recorded = TRY(read_on(*source, goal_of(o, board), session));
-  TRY(session.print(text_of(board, scene_name, *source, recorded),
-                    json_text(report_json(board, scene_name, *source, recorded))));
+  TRY(session.print(text_of(board, scene_name, *source, recorded), report_of(board, scene_name, *source, recorded)));
   if (const auto& error = source->error()) return tl::unexpected(*error);
   return {};
 }

@@ -1,12 +1,184 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <ctime>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "drivers/recording/recording_reader.hpp"
 #include "firmware/app/command.hpp"
-#include "firmware/app/recording/recording_summary.hpp"
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/visible_text.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
+
+using recording::RecordingDamage;
+using recording::RecordingReader;
+
+/// Frames that are missing between two recorded ones.
+struct FrameGap {
+  std::uint64_t before_frame = 0;  ///< number of the frame that came after the gap
+  std::uint64_t frames = 0;
+};
+
+/// What a recording holds, gathered while it is read.
+class RecordingSummary {
+ public:
+  static constexpr std::size_t most_listed_gaps = 20;
+
+  void add(const recording::RecordedFrame& frame);
+
+  /// For people: a few lines. `reader` has been read to its end.
+  [[nodiscard]] std::string text(const recording::RecordingReader& reader) const;
+  /// For machines: every figure.
+  [[nodiscard]] Figures figures(const recording::RecordingReader& reader) const;
+
+ private:
+  [[nodiscard]] std::string frames_text(const recording::RecordingReader& reader) const;
+
+  std::uint64_t frames_ = 0;
+  std::uint64_t next_frame_ = 0;
+  std::uint64_t gaps_ = 0;
+  std::uint64_t missing_ = 0;         // in them
+  std::vector<FrameGap> first_gaps_;  // most_listed_gaps of them
+  std::uint64_t saturated_ = 0, dark_ = 0, overrun_ = 0, untrusted_times_ = 0;
+  std::uint64_t invalid_samples_ = 0;
+  std::uint64_t configurations_ = 0;  // times that config_id changed, and the first
+  std::optional<std::uint32_t> last_config_;
+  std::int64_t first_arrival_ns_ = 0, last_arrival_ns_ = 0;
+};
+
+std::string utc(std::int64_t unix_ns) {
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(unix_ns / 1'000'000'000)));
+}
+
+/// "key = value" lines as "key value, ...".
+std::string one_line(std::string settings) {
+  while (!settings.empty() && settings.back() == '\n') settings.pop_back();
+  std::string text;
+  for (const char c : settings) text += c == '\n' ? std::string(", ") : std::string(1, c);
+  return visible_text(text);
+}
+
+std::string damage_text(const RecordingDamage& damage) {
+  std::string text;
+  if (damage.stretches > 0) {
+    text += fmt::format("damaged: {} bytes in {} place{}, the first at byte {}; {} frame{} lost there\n", damage.bytes,
+                        damage.stretches, damage.stretches == 1 ? "" : "s", damage.first_at, damage.blocks,
+                        damage.blocks == 1 ? "" : "s");
+  }
+  if (damage.torn_bytes > 0) {
+    text +=
+        fmt::format("torn tail: {} bytes of an unfinished block from byte {} on\n", damage.torn_bytes, damage.torn_at);
+  }
+  return text;
+}
+
+void RecordingSummary::add(const recording::RecordedFrame& recorded) {
+  const hal::SampleBlock& block = recorded.block;
+  if (block.frame > next_frame_) {
+    ++gaps_;
+    missing_ += block.frame - next_frame_;
+    if (first_gaps_.size() < most_listed_gaps) first_gaps_.push_back({block.frame, block.frame - next_frame_});
+  }
+  next_frame_ = block.frame + 1;
+  saturated_ += block.flags.saturated ? 1U : 0U;
+  dark_ += block.flags.dark ? 1U : 0U;
+  overrun_ += block.flags.overrun ? 1U : 0U;
+  untrusted_times_ += block.flags.time_ok ? 0U : 1U;
+  invalid_samples_ += static_cast<std::uint64_t>(std::count(block.valid.begin(), block.valid.end(), 0));
+  if (last_config_ != block.config_id) ++configurations_;
+  last_config_ = block.config_id;
+  if (frames_++ == 0) first_arrival_ns_ = recorded.arrival_ns;
+  last_arrival_ns_ = recorded.arrival_ns;
+}
+
+std::string RecordingSummary::frames_text(const RecordingReader& reader) const {
+  const hal::FrameAccount account = reader.account();
+  std::string text = fmt::format("frames: {} produced = {} recorded + {} dropped", account.produced, account.delivered,
+                                 account.total_dropped());
+  std::string_view before = " (";
+  for (std::size_t r = 0; r < hal::drop_reason_count; ++r) {
+    if (account.dropped[r] == 0) continue;
+    text += fmt::format("{}{} {}", before, account.dropped[r], name(static_cast<hal::DropReason>(r)));
+    before = ", ";
+  }
+  if (before == ", ") text += ")";
+  if (reader.unrecorded() > 0) text += fmt::format("; {} of them were too much for the recorder", reader.unrecorded());
+  text += "\n";
+  if (gaps_ > 0) {
+    text += fmt::format("gaps: {} with {} frames missing, before frame", gaps_, missing_);
+    for (const FrameGap& gap : first_gaps_) text += fmt::format(" {} ({})", gap.before_frame, gap.frames);
+    text += gaps_ > first_gaps_.size() ? " ...\n" : "\n";
+  }
+  return text;
+}
+
+std::string RecordingSummary::text(const RecordingReader& reader) const {
+  const hal::SourceDescription& s = reader.header().source;
+  const double seconds = static_cast<double>(last_arrival_ns_ - first_arrival_ns_) / 1e9;
+  std::string text = fmt::format("{}: {}, recorded {}\n", visible_text(reader.place()), bytes(reader.file_bytes()),
+                                 utc(reader.header().began_unix_ns));
+  text += fmt::format("source: {} {}, firmware {}; {} channels of {} bits, {}\n", visible_text(s.backend),
+                      visible_text(s.serial), visible_text(s.firmware), s.channels, s.bits,
+                      s.frame_rate_hz > 0.0 ? significant(s.frame_rate_hz, 6) + " frames a second" : "unpaced");
+  if (!reader.header().settings.empty()) text += "settings: " + one_line(reader.header().settings) + "\n";
+  text += frames_text(reader);
+  text += fmt::format(
+      "spread over {}; {} saturated, {} dark, {} with overrun flag, {} with an untrusted time; {} invalid "
+      "samples; {} configuration{}\n",
+      duration(seconds), saturated_, dark_, overrun_, untrusted_times_, invalid_samples_, configurations_,
+      configurations_ == 1 ? "" : "s");
+  text += damage_text(reader.damage());
+  const auto& end = reader.end();
+  return text + (end ? fmt::format("ended: {}\n", name(end->ending)) : "cut off: there is no end block\n");
+}
+
+Figures RecordingSummary::figures(const RecordingReader& reader) const {
+  const hal::SourceDescription& s = reader.header().source;
+  const RecordingDamage& damage = reader.damage();
+  Value::List gaps;
+  for (const FrameGap& gap : first_gaps_) {
+    gaps.push_back(Figures{{"before_frame", gap.before_frame}, {"frames", gap.frames}});
+  }
+  Value end;
+  if (reader.end()) end = Figures{{"why", name(reader.end()->ending)}, {"at_ns", reader.end()->at_ns}};
+  return {{"file", reader.place()},
+          {"file_bytes", reader.file_bytes()},
+          {"began_unix_ns", reader.header().began_unix_ns},
+          {"source", Figures{{"backend", s.backend},
+                             {"serial", s.serial},
+                             {"firmware", s.firmware},
+                             {"channels", s.channels},
+                             {"bits", s.bits},
+                             {"frame_rate_hz", s.frame_rate_hz}}},
+          {"settings", reader.header().settings},
+          {"frames", figures_of(reader.account())},
+          {"unrecorded", reader.unrecorded()},
+          {"gaps", Figures{{"count", gaps_}, {"missing_frames", missing_}, {"first", std::move(gaps)}}},
+          {"span_ns", last_arrival_ns_ - first_arrival_ns_},
+          {"saturated_frames", saturated_},
+          {"dark_frames", dark_},
+          {"overrun_flags", overrun_},
+          {"untrusted_times", untrusted_times_},
+          {"invalid_samples", invalid_samples_},
+          {"configurations", configurations_},
+          {"damage", Figures{{"places", damage.stretches},
+                             {"bytes", damage.bytes},
+                             {"first_at_byte", damage.stretches > 0 ? Value(damage.first_at) : Value()},
+                             {"frames", damage.blocks}}},
+          {"torn_tail",
+           Figures{{"bytes", damage.torn_bytes}, {"at_byte", damage.torn_bytes > 0 ? Value(damage.torn_at) : Value()}}},
+          {"end", std::move(end)}};
+}
 
 struct ReplayRequest {
   std::string file;
@@ -25,7 +197,7 @@ hal::Result<void> replay(const ReplayRequest& request, Session& session) {
     progress("reading", static_cast<double>(reader.position()), static_cast<double>(reader.file_bytes()));
   }
   session.end_progress();
-  return session.print(summary.text(reader), json_text(summary.json(reader)));
+  return session.print(summary.text(reader), summary.figures(reader));
 }
 
 Action declare(OptionList& options) {

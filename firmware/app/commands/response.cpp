@@ -13,12 +13,10 @@
 #include "calib/plausible_response.hpp"
 #include "calib/response_summary.hpp"
 #include "firmware/app/command.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/response_file.hpp"
 #include "firmware/text/number_text.hpp"
-#include "firmware/text/table.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -56,43 +54,31 @@ Result<void> try_response_output(const std::string& out, int ommatidia, int pixe
   return try_output(out);
 }
 
-std::string report_text(const NominalReport& r) {
+Figures report_of(const NominalReport& r) {
   const calib::ResponseSummary& s = r.summary;
-  Table table({{"figure", Align::left}, {"value", Align::left}});
-  table.add({"board", r.board});
-  table.add({"response", fmt::format("{} ommatidia x {} pixels ({}x{}) at {} mm", grouped(s.ommatidia),
-                                     grouped(s.pixels), r.object.rows, r.object.cols, r.object.distance_mm)});
-  if (r.as_measured) table.add({"as measured", fmt::format("with build errors of seed {}", *r.as_measured)});
-  table.add({"entries", fmt::format("{} ({} %)", grouped(s.entries), significant(100.0 * r.density(), 3))});
-  table.add({"blind rows", grouped(s.blind_rows)});
-  table.add({"pixels seen", fmt::format("{} to {} a row, median {:.6g}", grouped(s.support_min), grouped(s.support_max),
-                                        s.support_median)});
-  table.add({"unseen pixels", grouped(s.unseen_pixels())});
-  table.add({"rows seeing a pixel", "at most " + grouped(s.most_seen)});
-  table.add({"time", duration(r.seconds)});
-  if (!r.out.empty()) table.add({"written", r.out + (r.file_bytes ? ", " + bytes(*r.file_bytes) : "")});
-  return table.text();
-}
-
-Json report_json(const NominalReport& r) {
-  const calib::ResponseSummary& s = r.summary;
-  return {{"board", r.board},
-          {"distance_mm", r.object.distance_mm},
-          {"as_measured", r.as_measured ? Json(*r.as_measured) : Json()},
-          {"ommatidia", s.ommatidia},
-          {"pixels", s.pixels},
-          {"rows", r.object.rows},
-          {"cols", r.object.cols},
-          {"entries", s.entries},
-          {"density", r.density()},
-          {"blind_rows", s.blind_rows},
-          {"support", {{"min", s.support_min}, {"median", s.support_median}, {"max", s.support_max}}},
-          {"seen_pixels", s.seen_pixels},
-          {"unseen_pixels", s.unseen_pixels()},
-          {"most_seen", s.most_seen},
-          {"seconds", r.seconds},
-          {"written", r.out.empty() ? Json() : Json(r.out)},
-          {"file_bytes", r.file_bytes ? Json(*r.file_bytes) : Json()}};
+  Figures f;
+  f.add("board", "board", r.board, r.board);
+  f.line("response", fmt::format("{} ommatidia x {} pixels ({}x{}) at {} mm", grouped(s.ommatidia), grouped(s.pixels),
+                                 r.object.rows, r.object.cols, r.object.distance_mm));
+  f.add("distance_mm", r.object.distance_mm);
+  f.add("as_measured", "as measured", r.as_measured ? fmt::format("with build errors of seed {}", *r.as_measured) : "",
+        r.as_measured);
+  f.add("ommatidia", s.ommatidia).add("pixels", s.pixels).add("rows", r.object.rows).add("cols", r.object.cols);
+  f.add("entries", "entries", fmt::format("{} ({} %)", grouped(s.entries), significant(100.0 * r.density(), 3)),
+        s.entries);
+  f.add("density", r.density());
+  f.add("blind_rows", "blind rows", grouped(s.blind_rows), s.blind_rows);
+  f.add("support", "pixels seen",
+        fmt::format("{} to {} a row, median {:.6g}", grouped(s.support_min), grouped(s.support_max), s.support_median),
+        Figures{{"min", s.support_min}, {"median", s.support_median}, {"max", s.support_max}});
+  f.add("seen_pixels", s.seen_pixels);
+  f.add("unseen_pixels", "unseen pixels", grouped(s.unseen_pixels()), s.unseen_pixels());
+  f.add("most_seen", "rows seeing a pixel", "at most " + grouped(s.most_seen), s.most_seen);
+  f.add("seconds", "time", duration(r.seconds), r.seconds);
+  f.add("written", "written", r.out.empty() ? "" : r.out + (r.file_bytes ? ", " + bytes(*r.file_bytes) : ""),
+        r.out.empty() ? Value() : Value(r.out));
+  f.add("file_bytes", r.file_bytes);
+  return f;
 }
 
 Result<void> write(const std::string& out, const recon::Response& response, NominalReport& report) {
@@ -130,7 +116,7 @@ Result<void> write_nominal(const ResponseRequest& o, Session& session) {
   TRY(write(o.out, response, report));
   // A stop that comes this late finds the file complete.
   static_cast<void>(session.seal());
-  return session.print(report_text(report), json_text(report_json(report)));
+  return session.print(report_of(report));
 }
 
 Action declare(OptionList& options) {

@@ -1,93 +1,320 @@
-#include <memory>
-#include <string>
+#include "firmware/app/commands/run.hpp"
 
-#include "firmware/app/command.hpp"
-#include "firmware/app/run/run_options.hpp"
-#include "firmware/app/run/run_session.hpp"
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "firmware/app/commands/frame_keeper.hpp"
+#include "firmware/app/commands/recorded_with.hpp"
+#include "firmware/app/commands/run_outputs.hpp"
+#include "firmware/app/commands/run_report.hpp"
+#include "firmware/app/commands/run_source.hpp"
+#include "firmware/app/option_list.hpp"
+#include "firmware/eye/conventional_eye.hpp"
+#include "firmware/eye/ready_eye.hpp"
 #include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/simulated_board.hpp"
+#include "firmware/files/atomic_file.hpp"
+#include "firmware/operating_points/deadline_choice.hpp"
+#include "firmware/operating_points/point_choice.hpp"
+#include "firmware/operating_points/point_ladder.hpp"
+#include "firmware/operating_points/stored_points.hpp"
+#include "firmware/pipeline/pipeline.hpp"
+#include "firmware/pipeline/reconstructor_solver.hpp"
+#include "hal/try.hpp"
+#include "sim/scene_truth.hpp"
 
 namespace compueye::firmware {
 namespace {
 
-std::string footer() {
-  return "Built-in scenes:\n" + built_in_scene_help() +
-         "\nPacing: --live (default) takes frames at the board's rate and lets a newer one replace one that waits; "
-         "--lossless takes the next frame when there is room.\n"
-         "Quality is the mean over the delivered frames (an even selection in long runs); the conventional eye is "
-         "one frame; the contact sheet shows the last delivered frame.\n"
-         "Ctrl-C ends the run after the frame in work, with the summary and exit code 0; pressing it again changes "
-         "nothing, so no file is left half-written. Before the first frame it ends with exit code 1.\n"
-         "Exit codes: 0 the run went well, 1 it failed, 2 wrong usage.\n\n"
-         "Examples:\n"
-         "  compueye run --board boards/sim-8x8 --frames 200\n"
-         "  compueye run --board boards/sim-80x80 --lossless --frames 5 --sheet sheet.png\n"
-         "  compueye run --board boards/sim-8x8 --replay eye.rec --out pictures\n"
-         "  compueye run --board boards/sim-80x80 --deadline 250 --frames 20 --out pictures --format png16";
+using hal::ErrorCode;
+using hal::Result;
+
+LadderReport ladder_report(const PointChoice& choice, const Sweep& points) {
+  LadderReport ladder;
+  ladder.deadline_ms = choice.deadline_ms;
+  ladder.age_ms = choice.age_ms;
+  ladder.fits = choice.fits;
+  ladder.memory_bytes = choice.memory_bytes;
+  for (const std::size_t i : choice.ladder) {
+    const MeasuredPoint& point = points.points[i];
+    ladder.rungs.push_back({point_text(point), point.levels[choice.level].quality.mean.nmse, point.p999_ms, 0});
+  }
+  ladder.sentence = sentence(choice, points);
+  if (!points.cut_short.empty()) ladder.sentence += "; the stored points are partial: " + points.cut_short;
+  return ladder;
 }
 
-void add_scene_options(OptionList& options, RunOptions& o) {
-  options.add("--scene", o.scene, "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
-  options.add("--scene-seed", o.scene_seed, "which drawing of a built-in scene (default 0)");
-  options.add("--seed", o.seed, "of the noise (default 0); the same seed gives the same samples");
-  options
-      .add("--replay", o.replay,
-           "a recording instead of the board's eye, all of it unless --frames says less; name its --scene to "
-           "have the pictures compared with it")
-      .excludes("--seed");
-  options.add("--pace", o.replay_pace, "of a replay: fast (default; every frame is waited for) or recorded")
-      .where(one_of({"fast", "recorded"}));
-  options.add("--record", o.record, "file for the raw frames besides, for --replay; never overwritten");
-  options.add("--distance", o.distance_mm, "of the object from the lens tip in mm, known to the reconstruction");
-  options.add("--scene-distance", o.scene_distance_mm,
-              "of the scene alone in mm: the reconstruction goes on expecting it on the object plane");
+/// From the board to the report, step by step; each step is a member, and what the next ones need stays here.
+class BoardRun {
+ public:
+  BoardRun(const RunOptions& options, Session& session) : options_(options), session_(session) {}
+
+  Result<void> run() {
+    TRY(prepare());
+    TRY(make_eye());
+    TRY(fit());
+    TRY(run_pipeline());
+    // A sheet that cannot be written must not cost the summary of the run.
+    if (auto compared = compare(); !compared && !report_.summary.error) {
+      report_.summary.error = std::move(compared.error());
+    }
+    TRY(print());
+    return verdict();
+  }
+
+ private:
+  Result<void> prepare();
+  void overrule_board();
+  Result<void> make_eye();
+  Result<void> choose_eye(const recon::Progress& ask);
+  [[nodiscard]] ReadyEye& eye() { return ladder_.eyes.front(); }
+  [[nodiscard]] const ReadyEye& eye() const { return ladder_.eyes.front(); }
+  [[nodiscard]] double period_ms() const { return 1e3 / board_.source.frame_rate_hz; }
+  Result<void> fit();
+  Result<void> run_pipeline();
+  Result<void> run_with(FrameSolver& solver, hal::FrameSink& sink, FrameObserver& observer);
+  Result<void> compare();
+  Result<void> measure_quality();
+  Result<void> write_sheet();
+  Result<void> print();
+  [[nodiscard]] Result<void> verdict() const;
+  void note(const std::string& sentence);
+  void fill_figures();
+  [[nodiscard]] PipelineSettings pipeline_settings() const;
+  /// What is in front of an eye on a cable is known only when it is named.
+  [[nodiscard]] bool knows_scene() const {
+    return options_.knows_scene() && (board_.source.simulated() || !options_.scene.empty());
+  }
+  [[nodiscard]] std::uint64_t frames() const {
+    return static_cast<std::uint64_t>(
+        options_.frames.value_or(options_.replays() || !board_.source.simulated() ? 0 : board_.scene.frames_per_scene));
+  }
+
+  const RunOptions& options_;
+  Session& session_;
+  Board board_;
+  sim::Scene scene_;
+  hal::Image truth_;
+  PointLadder ladder_;                     // its first eye is the board's, its rungs are empty without stored points
+  std::vector<std::string> choice_notes_;  // said when the set-up no longer redraws its line
+  std::optional<RunSource> source_;
+  std::unique_ptr<FrameKeeper> keeper_;
+  hal::Image conventional_;
+  RunReport report_;
+};
+
+void BoardRun::note(const std::string& sentence) {
+  report_.notes.push_back(sentence);
+  session_.note(sentence);
 }
 
-void add_solver_options(OptionList& options, RunOptions& o) {
-  options.add("--deadline", o.deadline_ms,
-              "ms from the start of exposure to the published picture: the most accurate point that `compueye "
-              "pareto` has stored and that leaves a fifth of it as head-room, with faster ones to step down to "
-              "while pictures are late; without stored points as many of the board's iterations as fit, by "
-              "timing real solves first. Late pictures are published and counted");
-  options.add("--iterations", o.iterations,
-              "a frame (default: the board's); with --deadline the most, fitted by trial");
-  options.add("--threads", o.threads, "that share a frame's work (default: the board's); the same pictures");
-  options.add("--lambda", o.lambda, "weight of the penalty, by hand");
-  options.add("--sigma", o.sigma, "noise of one sample in white pixels, for lambda by rule").excludes("--lambda");
+/// The command line has the last word.
+void BoardRun::overrule_board() {
+  if (options_.distance_mm) board_.object.distance_mm = *options_.distance_mm;
+  if (options_.iterations) board_.plan.iterations = static_cast<int>(*options_.iterations);
+  if (options_.threads) board_.plan.threads = static_cast<int>(*options_.threads);
+  if (options_.sigma) board_.sigma = options_.sigma;
+  if (options_.sigma || options_.lambda) board_.lambda = options_.lambda;
 }
 
-void add_output_options(OptionList& options, RunOptions& o) {
-  options.add("--out", o.out, "folder for the pictures; made when missing");
-  options.add("--format", o.format, "png (default with --out), png16, npy (one file frames.npy) or none")
-      .where(one_of({"png", "png16", "npy", "none"}));
-  options.add("--sheet", o.sheet, "contact sheet PNG: scene, conventional eye, reconstruction, error");
-  options.add("--report", o.report, "file for the object that --json prints");
-  options.add("--table", o.table, "print a table instead: its header only, this run's row, or both")
-      .where(one_of({"header", "row", "both"}));
-  options.json("print one object with every figure and nothing else on stdout");
+Result<void> BoardRun::prepare() {
+  board_ = TRY(load_board(options_.board));
+  overrule_board();
+  TRY(try_outputs(options_));
+  if (!options_.record.empty()) TRY(check_new_recording(options_.record));
+  TRY(need(options_.sheet.empty() || knows_scene(), "--sheet",
+           "needs --scene with an eye on a cable: it compares the picture with what the eye looks at"));
+  scene_ = TRY(choose_scene(
+      board_, {options_.scene, static_cast<std::uint64_t>(options_.scene_seed), options_.scene_distance_mm}));
+  truth_ = TRY(sim::scene_truth(scene_, board_.object));
+  report_.scene = knows_scene() ? scene_.name : "not known";
+  report_.seed = options_.seed;
+  report_.distance_mm = board_.object.distance_mm;
+  report_.lossless = options_.waits_for_frames();
+  return {};
 }
 
-Action declare(OptionList& options) {
-  auto o = std::make_shared<RunOptions>();
-  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8");
-  options.add("--frames", o->frames,
-              "end after so many delivered pictures; 0: run until stopped (default: the board's frames_per_scene)");
-  add_scene_options(options, *o);
-  add_solver_options(options, *o);
-  add_output_options(options, *o);
-  options.flag("--live", o->lossless, "newest frame wins (default)", false);
-  options.flag("--lossless", o->lossless, "every frame is waited for").excludes("--live");
-  options.flag("--show", o->show, "show pictures in the terminal (default: when stdout is one)");
-  options.flag("--no-show", o->show, "do not", false).excludes("--show");
-  return [o](Session& session) {
-    o->json = session.json();
-    return run_board(*o, session);
-  };
+Result<void> BoardRun::make_eye() {
+  const std::int64_t begin_ns = session_.clock().now_ns();
+  const recon::Progress progress = session_.progress();
+  progress(options_.replays() ? "recording" : board_.source.simulated() ? "simulated eye" : "eye", 0.0, 0.0);
+  source_ = TRY(RunSource::make(options_, board_, scene_, frames(), session_.clock()));
+  TRY(choose_eye(progress));
+  session_.end_progress();
+  for (const std::string& sentence : choice_notes_) note(sentence);
+  for (ReadyEye& one : ladder_.eyes) {
+    for (const std::string& sentence : one.notes()) note(sentence);
+    one.forget_modes();
+  }
+  report_.setup_s = static_cast<double>(session_.clock().now_ns() - begin_ns) / 1e9;
+  return {};
+}
+
+/// From stored points where a deadline asks for them; otherwise, or when there are none that fit, what the board says.
+Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
+  const LivingResponse living = TRY(living_response(board_, ask));
+  // Iterations, threads or lambda by hand say what to run; nothing that was measured goes with them.
+  if (options_.deadline_ms && !options_.iterations && !options_.threads && !options_.lambda) {
+    const auto points = load_points(board_.cache(), points_key(board_, living.response));
+    if (points) {
+      const PointChoice choice = choose_points(*points, board_.noise_sigma(), *options_.deadline_ms, period_ms());
+      ladder_ = TRY(make_ladder(board_, living, *points, choice, board_.cache(), ask));
+      report_.ladder = ladder_report(choice, *points);
+      choice_notes_.push_back(report_.ladder->sentence);
+      return {};
+    }
+    choice_notes_.push_back(
+        fmt::format("no stored points to choose from, so iterations are fitted by trial; `compueye pareto --board {}` "
+                    "measures them: {}",
+                    options_.board, points.error().text()));
+  }
+  ladder_.eyes.push_back(TRY(ReadyEye::make(board_, living, board_.cache(), ask)));
+  return {};
+}
+
+Result<void> BoardRun::fit() {
+  // Whatever a recording's first frame is like, others may be better.
+  if (options_.replays() && !(options_.deadline_ms && ladder_.rungs.empty())) return {};
+  const auto frame = TRY(take_trial_frame(board_, correction_settings(board_, eye().sees()), source_->unrecorded(),
+                                          session_.clock(), session_.stop_requested()));
+  if (options_.deadline_ms && ladder_.rungs.empty()) {
+    report_.deadline = TRY(fit_deadline(*options_.deadline_ms, period_ms(), frame, eye(), session_.clock()));
+    note(report_.deadline->sentence());
+  }
+  if (!session_.stop_requested()) return {};
+  return hal::fail(ErrorCode::interrupted, board_.name, "stopped before the first frame");
+}
+
+PipelineSettings BoardRun::pipeline_settings() const {
+  PipelineSettings settings;
+  settings.pacing = options_.waits_for_frames() ? Pacing::every_frame : Pacing::newest_wins;
+  settings.frames = frames();
+  if (options_.deadline_ms) settings.deadline_ns = std::llround(*options_.deadline_ms * 1e6);
+  if (options_.waits_for_frames()) settings.queue_capacity = 1;
+  // The simulated device counts its time from its own power-on, as a real one does.
+  settings.device_clock = DeviceClock::free_running;
+  settings.silence_limit_ns += static_cast<std::int64_t>(2e9 / std::max(board_.source.frame_rate_hz, 1e-3));
+  settings.correction = correction_settings(board_, eye().sees());
+  return settings;
+}
+
+void BoardRun::fill_figures() {
+  const recon::Reconstructor& r = eye().reconstructor();
+  report_.eye = {.board = board_.name,
+                 .source = source_->name(),
+                 .ommatidia = board_.eye.ommatidia(),
+                 .blind = static_cast<int>(std::count(eye().sees().begin(), eye().sees().end(), 0)),
+                 .dead = static_cast<int>(board_.sensor.dead.size()),
+                 .image_rows = r.image_rows(),
+                 .image_cols = r.image_cols(),
+                 .frame_rate_hz = board_.source.frame_rate_hz,
+                 .lambda = eye().lambda(),
+                 .rho = r.plan().rho,
+                 .point = r.operating_point(),
+                 .factor = eye().factor_origin(),
+                 .workspace_bytes = r.required_bytes(),
+                 .table_bytes = r.table_bytes()};
+}
+
+Result<void> BoardRun::run_pipeline() {
+  fill_figures();
+  const auto sinks = make_sinks(options_, session_.clock(), report_.files);
+  keeper_ = std::make_unique<FrameKeeper>(hal::FrameFormat{truth_.rows, truth_.cols}, frames());
+  if (ladder_.rungs.empty()) {
+    ReconstructorSolver solver(eye().reconstructor());
+    return run_with(solver, *sinks, *keeper_);
+  }
+  LadderSolver solver(ladder_);
+  DeadlineWatch watch(solver, session_.clock(), *keeper_);
+  auto done = run_with(solver, *sinks, watch);
+  for (std::size_t r = 0; r < watch.frames().size(); ++r) report_.ladder->rungs[r].frames = watch.frames()[r];
+  report_.ladder->steps_down = watch.rule().steps_down();
+  report_.ladder->steps_up = watch.rule().steps_up();
+  return done;
+}
+
+Result<void> BoardRun::run_with(FrameSolver& solver, hal::FrameSink& sink, FrameObserver& observer) {
+  auto pipeline =
+      TRY(Pipeline::create(pipeline_settings(), source_->source(), solver, sink, session_.clock(), &observer));
+  std::optional<RunWatch> watch;
+  if (!shows_pictures(options_)) watch.emplace(*keeper_, frames(), session_.progress());
+  report_.summary = pipeline.run(session_.stop_requested());
+  watch.reset();
+  for (const std::string& sentence : source_->notes()) note(sentence);
+  if (auto recorded = source_->recorded(); !recorded && !report_.summary.error) {
+    report_.summary.error = std::move(recorded.error());
+  }
+  if (!options_.record.empty()) report_.files.push_back(options_.record);
+  return {};
+}
+
+Result<void> BoardRun::measure_quality() {
+  if (keeper_->kept() == 0) return {};
+  const auto view = [&](std::span<const float> pixels) { return recon::PictureView(pixels, truth_.rows, truth_.cols); };
+  PictureQuality mean;
+  for (std::size_t i = 0; i < keeper_->kept(); ++i) {
+    const PictureQuality quality = TRY(quality_of(view(keeper_->picture(i)), truth_));
+    mean.nmse += quality.nmse;
+    mean.psnr_db += quality.psnr_db;
+    mean.ssim += quality.ssim;
+  }
+  const auto count = static_cast<double>(keeper_->kept());
+  report_.quality = PictureQuality{mean.nmse / count, mean.psnr_db / count, mean.ssim / count};
+  report_.measured = keeper_->kept();
+  report_.last_quality = TRY(quality_of(view(keeper_->last()), truth_));
+  return {};
+}
+
+Result<void> BoardRun::compare() {
+  if (!knows_scene()) return {};
+  TRY(measure_quality());
+  if (keeper_->delivered() == 0) return {};
+  auto conventional = conventional_picture(board_, scene_, static_cast<std::uint64_t>(options_.seed));
+  if (!conventional) {
+    note("the conventional eye is left out: " + conventional.error().text());
+  } else {
+    conventional_ = std::move(*conventional);
+    report_.conventional = TRY(quality_of(conventional_, truth_));
+  }
+  return write_sheet();
+}
+
+Result<void> BoardRun::write_sheet() {
+  if (options_.sheet.empty()) return {};
+  hal::Image last(truth_.rows, truth_.cols);
+  std::copy(keeper_->last().begin(), keeper_->last().end(), last.pixels.begin());
+  report_.files.push_back(options_.sheet);
+  return write_run_sheet(options_.sheet, report_, truth_, conventional_, last);
+}
+
+Result<void> BoardRun::print() {
+  const std::string json = report_figures(report_).json();
+  if (!options_.report.empty()) TRY(write_file_atomically(options_.report, std::as_bytes(std::span(json))));
+  if (options_.table.empty()) return session_.print(report_text(report_), json);
+  return session_.print((options_.table == "both" ? table_header() : std::string()) + table_row(report_));
+}
+
+Result<void> BoardRun::verdict() const {
+  const RunSummary& s = report_.summary;
+  if (s.error) return tl::unexpected(*s.error);
+  if (s.frames.balanced()) return {};
+  return hal::fail(
+      ErrorCode::mismatch, "pipeline",
+      fmt::format("the books do not balance: {} produced, {} delivered, {} dropped; this is a defect worth "
+                  "reporting",
+                  s.frames.produced, s.frames.delivered, s.frames.total_dropped()));
 }
 
 }  // namespace
 
-extern const Command run_command;
-const Command run_command{"run", "live pictures from an eye: the runtime itself", OnSignal::ends_in_order, declare,
-                          footer};
+Result<void> run_board(const RunOptions& options, Session& session) {
+  if (options.table == "header") return session.print(table_header());
+  TRY(options.check());
+  return BoardRun(options, session).run();
+}
 
 }  // namespace compueye::firmware

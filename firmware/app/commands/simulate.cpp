@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "firmware/app/command.hpp"
-#include "firmware/app/report/json_report.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
@@ -138,10 +137,11 @@ Result<void> write_truth(const Board& board, const sim::Scene& scene, const Simu
   return write_npy(o.truth, shape, std::span<const float>(truth.pixels));
 }
 
-Json json_of(const Board& board, const sim::Scene& scene, const Samples& samples, const SimulateRequest& o) {
-  Json effects = Json::array();
-  for (const Effect& e : effects_of(board, scene, o))
-    effects.push_back({{"name", e.name}, {"on", e.on}, {"what", e.what}});
+Figures report_of(const Board& board, const sim::Scene& scene, const Samples& samples, const SimulateRequest& o) {
+  Value::List effects;
+  for (const Effect& e : effects_of(board, scene, o)) {
+    effects.push_back(Figures{{"name", e.name}, {"on", e.on}, {"what", e.what}});
+  }
   return {{"board", board.name},
           {"scene", scene.name},
           {"frames", o.frames},
@@ -185,7 +185,7 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
   const Samples samples = TRY(take(board, scene, request));
   TRY(write(samples, board, request));
   TRY(write_truth(board, scene, request));
-  return session.print(text_of(board, scene, samples, request), json_text(json_of(board, scene, samples, request)));
+  return session.print(text_of(board, scene, samples, request), report_of(board, scene, samples, request));
 }
 
 Action declare(OptionList& options) {

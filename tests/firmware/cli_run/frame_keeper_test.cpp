@@ -1,4 +1,4 @@
-#include "firmware/app/run/frame_keeper.hpp"
+#include "firmware/app/commands/frame_keeper.hpp"
 
 #include <doctest/doctest.h>
 

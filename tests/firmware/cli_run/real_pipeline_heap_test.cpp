@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "firmware/app/run/frame_keeper.hpp"
+#include "firmware/app/commands/frame_keeper.hpp"
 #include "firmware/eye/ready_eye.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"

@@ -10,9 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "firmware/app/devices/device_list.hpp"
-#include "firmware/app/run/run_options.hpp"
-#include "firmware/app/run/run_session.hpp"
+#include "firmware/app/commands/devices.hpp"
+#include "firmware/app/commands/run.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/hil/level2/benches.hpp"
 
@@ -83,7 +82,7 @@ TEST_CASE("program: devices lists what is attached, with what the eyes say of th
   hal::MonotonicClock clock;
   const firmware::AttachedEyes attached = firmware::list_attached_eyes(clock);
   CHECK(attached.notes.empty());
-  const Json json = firmware::devices_json(attached, {});
+  const Json json = Json::parse(firmware::devices_figures(attached, {}).json());
   REQUIRE(json["attached"].size() == 2);
   for (std::size_t i = 0; i < 2; ++i) {
     const Json& found = json["attached"][i];

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "firmware/app/report.hpp"
+#include "firmware/eye/board.hpp"
+#include "firmware/eye/source_list.hpp"
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// A folder with a board file: what it describes, or why it cannot be read.
+struct ListedBoard {
+  std::string folder;
+  hal::Result<Board> board;
+};
+
+/// Every folder below `boards` that holds a board.toml, by name. Errors: not_found, io.
+[[nodiscard]] hal::Result<std::vector<ListedBoard>> list_boards(const std::string& boards);
+
+[[nodiscard]] std::string devices_text(const AttachedEyes& attached, const std::string& boards,
+                                       const std::vector<ListedBoard>& listed);
+[[nodiscard]] Figures devices_figures(const AttachedEyes& attached, const std::vector<ListedBoard>& listed);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,69 @@
+#include "firmware/app/commands/frame_keeper.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace compueye::firmware {
+namespace {
+
+constexpr std::size_t least_capacity = 2;
+constexpr std::uint64_t usual_capacity = 1024;
+
+}  // namespace
+
+FrameKeeper::FrameKeeper(hal::FrameFormat format, std::uint64_t expected, std::size_t most_bytes)
+    : pixels_(static_cast<std::size_t>(format.rows) * static_cast<std::size_t>(format.cols)) {
+  const std::size_t fit = most_bytes / (pixels_ * sizeof(float));
+  const std::uint64_t wanted = expected > 0 ? std::min(expected, usual_capacity) : usual_capacity;
+  capacity_ = std::max(least_capacity, std::min(fit, static_cast<std::size_t>(wanted)));
+  pictures_.resize(capacity_ * pixels_);
+  last_.resize(pixels_);
+}
+
+std::span<float> FrameKeeper::slot(std::size_t index) noexcept {
+  return std::span(pictures_).subspan(index * pixels_, pixels_);
+}
+
+std::span<const float> FrameKeeper::picture(std::size_t index) const noexcept {
+  return std::span(pictures_).subspan(index * pixels_, pixels_);
+}
+
+void FrameKeeper::published(const PublishedFrame& published) noexcept {
+  const std::span<const float> pixels = published.frame.pixels;
+  std::copy(pixels.begin(), pixels.end(), last_.begin());
+  last_frame_ = published.frame.frame;
+  const std::uint64_t index = published.delivered - 1;
+  delivered_.store(published.delivered, std::memory_order_relaxed);
+  if (index % stride_ != 0) return;
+  if (kept_ == capacity_) {
+    for (std::size_t i = 1; 2 * i < kept_; ++i) std::copy_n(picture(2 * i).begin(), pixels_, slot(i).begin());
+    kept_ = (kept_ + 1) / 2;
+    stride_ *= 2;
+    if (index % stride_ != 0) return;
+  }
+  std::copy(pixels.begin(), pixels.end(), slot(kept_).begin());
+  ++kept_;
+}
+
+RunWatch::RunWatch(const FrameKeeper& keeper, std::uint64_t frames, recon::Progress progress)
+    : keeper_(keeper), progress_(std::move(progress)), thread_([this, frames] { watch(frames); }) {}
+
+RunWatch::~RunWatch() {
+  {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+  }
+  ended_.notify_all();
+  thread_.join();
+}
+
+void RunWatch::watch(std::uint64_t frames) {
+  constexpr std::chrono::milliseconds every{100};
+  std::unique_lock lock(mutex_);
+  while (!ended_.wait_for(lock, every, [this] { return over_; })) {
+    progress_("frames", static_cast<double>(keeper_.delivered()), static_cast<double>(frames));
+  }
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+
+#include "firmware/app/option_list.hpp"
+#include "firmware/app/report.hpp"
+#include "firmware/eye/board.hpp"
+#include "hal/result.hpp"
+#include "recon/core/parts/frame_info.hpp"
+#include "recon/response.hpp"
+#include "recon/setup/factor.hpp"
+
+namespace compueye::firmware {
+
+/// What a board is and what follows from it: the eye, the sensor's LSB and noise, lambda and rho by rule, and the
+/// factors kept in the board's .cache. Errors: those of nominal_response() and lambda_by_rule().
+[[nodiscard]] hal::Result<void> add_board_figures(const Board& board, const recon::Progress& progress,
+                                                  Figures& figures);
+
+/// What a calibrator wants to know of a matrix before using it. With the picture's `size` also what depends on its rows
+/// and columns: mirror symmetry, how A is applied, and the exact memory of admm. Errors: mismatch (size), interrupted.
+[[nodiscard]] hal::Result<void> add_response_figures(const recon::Response& a, std::optional<PictureSize> size,
+                                                     const recon::Progress& progress, Figures& figures);
+
+/// How A is applied and what one application takes, as `asked` or by rule. Errors: those of recon::operator_figures().
+[[nodiscard]] hal::Result<void> add_operator_figures(const recon::Response& response, int image_rows, int image_cols,
+                                                     std::optional<recon::OperatorKind> asked, Figures& figures);
+
+}  // namespace compueye::firmware

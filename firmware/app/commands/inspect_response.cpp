@@ -1,0 +1,246 @@
+#include "firmware/app/commands/inspect.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "calib/response_summary.hpp"
+#include "firmware/text/number_text.hpp"
+#include "hal/try.hpp"
+#include "recon/lambda_rule.hpp"
+#include "recon/option_names.hpp"
+#include "recon/reconstructor.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
+#include "recon/setup/operator_figures.hpp"
+#include "recon/setup/parity_classes.hpp"
+#include "recon/setup/penalty_rule.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::ErrorCode;
+using hal::fail;
+using hal::Result;
+using recon::Response;
+
+using Row = std::vector<std::pair<std::int32_t, double>>;
+
+void take_row(const recon::Response& response, int m, Row& row) {
+  row.clear();
+  response.for_each_in_row(m, [&](std::int32_t n, double value) {
+    if (value != 0.0) row.emplace_back(n, value);
+  });
+}
+
+/// Mixes as FNV-1a does, a number at a time.
+std::uint64_t hash_of(const Row& row) {
+  std::uint64_t hash = 0xCBF29CE484222325U;
+  const auto mix = [&hash](std::uint64_t bits) {
+    hash = (hash ^ bits) * 0x100000001B3U;
+    hash ^= hash >> 29U;
+  };
+  for (const auto& [column, value] : row) {
+    mix(static_cast<std::uint64_t>(column));
+    mix(std::bit_cast<std::uint64_t>(value));
+  }
+  return hash;
+}
+
+/// Seeing rows that equal an earlier one, entry for entry: they measure the same thing twice.
+int count_duplicate_rows(const recon::Response& response) {
+  std::unordered_map<std::uint64_t, std::vector<int>> first_rows;
+  Row row, other;
+  int duplicates = 0;
+  for (int m = 0; m < response.rows(); ++m) {
+    take_row(response, m, row);
+    if (row.empty()) continue;
+    std::vector<int>& alike = first_rows[hash_of(row)];
+    const bool seen = std::any_of(alike.begin(), alike.end(), [&](int earlier) {
+      take_row(response, earlier, other);
+      return other == row;
+    });
+    if (seen) {
+      ++duplicates;
+    } else {
+      alike.push_back(m);
+    }
+  }
+  return duplicates;
+}
+
+struct SingularValue {
+  double value = 0.0;  ///< a lower bound that grows with every iteration
+  int iterations = 0;
+  bool settled = false;  ///< the last iteration changed it by less than 1e-9 of itself
+};
+
+constexpr int most_iterations = 300;
+constexpr double settled_change = 1e-9;
+
+double length_of(std::span<const double> v) {
+  return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
+}
+
+/// No symmetry, no zeros and no period, so that it is orthogonal to no singular vector that a real eye has.
+std::vector<double> start_vector(std::size_t size) {
+  constexpr double golden = 0.6180339887498949;
+  std::vector<double> v(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    const double turns = golden * static_cast<double>(i + 1);
+    v[i] = 0.5 + (turns - std::floor(turns));
+  }
+  return v;
+}
+
+/// The largest singular value of A, which is the norm of A and the square root of the gradient's Lipschitz constant:
+/// power iteration on A'A from a fixed start, at most 300 times (Golub & Van Loan, "Matrix Computations", 4th
+/// ed., 8.2.1). `progress` may stop it early, not settled.
+SingularValue largest_singular_value(const recon::Response& a, const recon::Progress& progress) {
+  SingularValue found;
+  std::vector<double> x = start_vector(static_cast<std::size_t>(a.cols()));
+  std::vector<double> y(static_cast<std::size_t>(a.rows()));
+  while (found.iterations < most_iterations && !found.settled) {
+    const double length = length_of(x);
+    if (!(length > 0.0) || !std::isfinite(length)) break;
+    for (double& each : x) each /= length;
+    a.forward(x, y);
+    const double before = found.value;
+    found.value = length_of(y);
+    ++found.iterations;
+    found.settled = std::abs(found.value - before) <= settled_change * found.value;
+    a.adjoint(y, x);
+    if (progress && !progress("largest singular value", found.iterations, most_iterations)) break;
+  }
+  return found;
+}
+
+/// Beyond this the exact memory of admm is not worth the memory it takes to find out.
+constexpr std::uint64_t most_factor_bytes = std::uint64_t{512} << 20U;
+
+void add_shape(const Response& a, const calib::ResponseSummary& s, Figures& figures) {
+  const auto elements = static_cast<double>(a.rows()) * static_cast<double>(a.cols());
+  const double density = static_cast<double>(s.entries) / elements;
+  figures.add("channels", "response", fmt::format("{} rows x {} columns", grouped(a.rows()), grouped(a.cols())),
+              a.rows());
+  figures.add("pixels", a.cols());
+  figures.add("stored_as", "stored as", a.is_dense() ? "dense" : "sparse rows", a.is_dense() ? "dense" : "sparse");
+  figures.add("stored_entries", a.stored_entries());
+  figures.add("entries", "non-zero entries",
+              fmt::format("{} ({} %)", grouped(s.entries), significant(100.0 * density, 3)), s.entries);
+  figures.add("density", density);
+}
+
+void add_support(const calib::ResponseSummary& s, int duplicates, Figures& figures) {
+  figures.add("blind_rows", "blind rows", grouped(s.blind_rows), s.blind_rows);
+  figures.add("zero_columns", "unseen pixels", grouped(s.unseen_pixels()), s.unseen_pixels());
+  figures.add("duplicate_rows", "duplicate rows", grouped(duplicates), duplicates);
+  figures.add(
+      "support", "pixels seen",
+      fmt::format("{} to {} a row, median {:.6g}", grouped(s.support_min), grouped(s.support_max), s.support_median),
+      Figures{{"min", s.support_min}, {"median", s.support_median}, {"max", s.support_max}});
+  figures.add("most_seen", "rows seeing a pixel", "at most " + grouped(s.most_seen), s.most_seen);
+}
+
+void add_ranges(const Response& a, Figures& figures) {
+  const auto [least, most] = std::minmax_element(a.values().begin(), a.values().end());
+  figures.add("entry_range", "stored entries", fmt::format("{} to {}", significant(*least, 6), significant(*most, 6)),
+              std::vector<double>{*least, *most});
+  const std::vector<double> sums = a.row_sums();
+  std::vector<double> seeing;
+  for (const std::int32_t m : a.seeing_rows()) seeing.push_back(sums[static_cast<std::size_t>(m)]);
+  if (seeing.empty()) return;
+  const auto [low, high] = std::minmax_element(seeing.begin(), seeing.end());
+  figures.add("row_sums", "row sums (seeing rows)",
+              fmt::format("{} to {} white pixels", significant(*low, 6), significant(*high, 6)),
+              std::vector<double>{*low, *high});
+}
+
+void add_symmetry(const Response& a, PictureSize size, Figures& figures) {
+  // As the solver's set-up does: blind rows have no place in the picture and so no mirror image.
+  const std::size_t order = recon::find_mirror_symmetry(a.select_rows(a.seeing_rows()), size.rows, size.cols).order();
+  figures.add("mirror_symmetry", "mirror symmetry",
+              order == 4   ? "left-right and up-down (set-up is 16 times faster)"
+              : order == 2 ? "one axis (set-up is 4 times faster)"
+                           : "none",
+              order);
+}
+
+/// Exact, from a reconstructor that is handed an empty factor instead of computing one.
+Result<void> add_memory(const Response& a, PictureSize size, Figures& figures) {
+  const std::size_t seeing = a.seeing_rows().size();
+  if (seeing == 0) return {};
+  const recon::ParityClasses classes(static_cast<int>(seeing),
+                                     recon::find_mirror_symmetry(a.select_rows(a.seeing_rows()), size.rows, size.cols));
+  const std::size_t packed = recon::factor_size(classes);
+  if (packed * sizeof(float) > most_factor_bytes) return {};
+  const recon::Objective objective;
+  recon::Plan plan;
+  recon::Factor factor{recon::resolve_rho(a, size.rows, size.cols, objective, plan), static_cast<int>(seeing),
+                       std::vector<float>(packed)};
+  const auto made = TRY(recon::Reconstructor::create(a, size.rows, size.cols, objective, plan, std::move(factor)));
+  figures.add("rho_by_rule", "rho by rule", significant(made.plan().rho, 4), made.plan().rho);
+  figures.add(
+      "admm_memory", "memory of admm (f32)",
+      fmt::format("{} tables (factor {}), {} workspace", bytes(made.table_bytes()), bytes(packed * sizeof(float)),
+                  bytes(made.required_bytes())),
+      Figures{
+          {"tables", made.table_bytes()}, {"factor", packed * sizeof(float)}, {"workspace", made.required_bytes()}});
+  return {};
+}
+
+void add_lambda_scales(const Response& a, Figures& figures) {
+  const double norm = recon::lambda_scale(a, recon::BasisKind::identity);
+  figures.add("median_column_norm", "median column norm", significant(norm, 6), norm);
+  const double overlap = recon::lambda_scale(a, recon::BasisKind::dct);
+  figures.add("mean_overlap", "mean column sum", significant(overlap, 6), overlap);
+}
+
+}  // namespace
+
+hal::Result<void> add_operator_figures(const recon::Response& response, int image_rows, int image_cols,
+                                       std::optional<recon::OperatorKind> asked, Figures& figures) {
+  const auto found = TRY(recon::operator_figures(response, image_rows, image_cols, asked));
+  figures.add("operator", "operator (how A is applied)",
+              fmt::format("{}{}", recon::name(found.kind), asked ? "" : " (by rule)"), recon::name(found.kind));
+  figures.add("operator_cost", "A x, and as much A' y",
+              fmt::format("{} of tables, {} multiply-adds", bytes(found.bytes),
+                          grouped(static_cast<std::int64_t>(found.flops))),
+              Figures{{"bytes", found.bytes}, {"flops", found.flops}});
+  return {};
+}
+
+Result<void> add_response_figures(const Response& a, std::optional<PictureSize> size, const recon::Progress& progress,
+                                  Figures& figures) {
+  if (size && size->rows * size->cols != a.cols()) {
+    return fail(ErrorCode::mismatch, "--size",
+                fmt::format("{}x{} has {} pixels, the response has {} columns, expected them to be equal", size->rows,
+                            size->cols, size->rows * size->cols, a.cols()));
+  }
+  const calib::ResponseSummary summary = calib::summarise(a);
+  add_shape(a, summary, figures);
+  add_support(summary, count_duplicate_rows(a), figures);
+  if (a.stored_entries() > 0) add_ranges(a, figures);
+  const SingularValue largest = largest_singular_value(a, progress);
+  if (progress && !progress("norms", 0.0, 0.0)) {
+    return fail(ErrorCode::interrupted, "inspect", "was stopped before it was complete");
+  }
+  figures.add("largest_singular_value", "largest singular value",
+              significant(largest.value, 8) + (largest.settled ? "" : " (a lower bound: not settled)"), largest.value);
+  figures.add("largest_singular_value_settled", largest.settled);
+  add_lambda_scales(a, figures);
+  if (!size || summary.seeing_rows() == 0) return {};
+  add_symmetry(a, *size, figures);
+  TRY(add_operator_figures(a, size->rows, size->cols, std::nullopt, figures));
+  return add_memory(a, *size, figures);
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,148 @@
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "firmware/app/command.hpp"
+#include "firmware/app/commands/run.hpp"
+#include "firmware/eye/scene_choice.hpp"
+#include "recon/worker_threads.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::Result;
+
+template <class Number>
+Result<void> within(const std::string& option, const std::optional<Number>& value, double least, bool open,
+                    double most) {
+  if (!value) return {};
+  const auto number = static_cast<double>(*value);
+  const bool ok = std::isfinite(number) && (open ? number > least : number >= least) && number <= most;
+  const auto text = [](double v) { return std::to_string(static_cast<std::int64_t>(v)); };
+  return need(
+      ok, option,
+      "is " + std::to_string(*value) + ", expected a number " +
+          (open ? "above " + text(least) + " and at most " + text(most) : "from " + text(least) + " to " + text(most)));
+}
+
+std::string footer() {
+  return "Built-in scenes:\n" + built_in_scene_help() +
+         "\nPacing: --live (default) takes frames at the board's rate and lets a newer one replace one that waits; "
+         "--lossless takes the next frame when there is room.\n"
+         "Quality is the mean over the delivered frames (an even selection in long runs); the conventional eye is "
+         "one frame; the contact sheet shows the last delivered frame.\n"
+         "Ctrl-C ends the run after the frame in work, with the summary and exit code 0; pressing it again changes "
+         "nothing, so no file is left half-written. Before the first frame it ends with exit code 1.\n"
+         "Exit codes: 0 the run went well, 1 it failed, 2 wrong usage.\n\n"
+         "Examples:\n"
+         "  compueye run --board boards/sim-8x8 --frames 200\n"
+         "  compueye run --board boards/sim-80x80 --lossless --frames 5 --sheet sheet.png\n"
+         "  compueye run --board boards/sim-8x8 --replay eye.rec --out pictures\n"
+         "  compueye run --board boards/sim-80x80 --deadline 250 --frames 20 --out pictures --format png16";
+}
+
+void add_scene_options(OptionList& options, RunOptions& o) {
+  options.add("--scene", o.scene, "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
+  options.add("--scene-seed", o.scene_seed, "which drawing of a built-in scene (default 0)");
+  options.add("--seed", o.seed, "of the noise (default 0); the same seed gives the same samples");
+  options
+      .add("--replay", o.replay,
+           "a recording instead of the board's eye, all of it unless --frames says less; name its --scene to "
+           "have the pictures compared with it")
+      .excludes("--seed");
+  options.add("--pace", o.replay_pace, "of a replay: fast (default; every frame is waited for) or recorded")
+      .where(one_of({"fast", "recorded"}));
+  options.add("--record", o.record, "file for the raw frames besides, for --replay; never overwritten");
+  options.add("--distance", o.distance_mm, "of the object from the lens tip in mm, known to the reconstruction");
+  options.add("--scene-distance", o.scene_distance_mm,
+              "of the scene alone in mm: the reconstruction goes on expecting it on the object plane");
+}
+
+void add_solver_options(OptionList& options, RunOptions& o) {
+  options.add("--deadline", o.deadline_ms,
+              "ms from the start of exposure to the published picture: the most accurate point that `compueye "
+              "pareto` has stored and that leaves a fifth of it as head-room, with faster ones to step down to "
+              "while pictures are late; without stored points as many of the board's iterations as fit, by "
+              "timing real solves first. Late pictures are published and counted");
+  options.add("--iterations", o.iterations,
+              "a frame (default: the board's); with --deadline the most, fitted by trial");
+  options.add("--threads", o.threads, "that share a frame's work (default: the board's); the same pictures");
+  options.add("--lambda", o.lambda, "weight of the penalty, by hand");
+  options.add("--sigma", o.sigma, "noise of one sample in white pixels, for lambda by rule").excludes("--lambda");
+}
+
+void add_output_options(OptionList& options, RunOptions& o) {
+  options.add("--out", o.out, "folder for the pictures; made when missing");
+  options.add("--format", o.format, "png (default with --out), png16, npy (one file frames.npy) or none")
+      .where(one_of({"png", "png16", "npy", "none"}));
+  options.add("--sheet", o.sheet, "contact sheet PNG: scene, conventional eye, reconstruction, error");
+  options.add("--report", o.report, "file for the object that --json prints");
+  options.add("--table", o.table, "print a table instead: its header only, this run's row, or both")
+      .where(one_of({"header", "row", "both"}));
+  options.json("print one object with every figure and nothing else on stdout");
+}
+
+Action declare(OptionList& options) {
+  auto o = std::make_shared<RunOptions>();
+  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8");
+  options.add("--frames", o->frames,
+              "end after so many delivered pictures; 0: run until stopped (default: the board's frames_per_scene)");
+  add_scene_options(options, *o);
+  add_solver_options(options, *o);
+  add_output_options(options, *o);
+  options.flag("--live", o->lossless, "newest frame wins (default)", false);
+  options.flag("--lossless", o->lossless, "every frame is waited for").excludes("--live");
+  options.flag("--show", o->show, "show pictures in the terminal (default: when stdout is one)");
+  options.flag("--no-show", o->show, "do not", false).excludes("--show");
+  return [o](Session& session) {
+    o->json = session.json();
+    return run_board(*o, session);
+  };
+}
+
+}  // namespace
+
+Result<void> RunOptions::check() const {
+  constexpr double longest_mm = 1e6, longest_ms = 1e9, most_frames = 1e15, most_iterations = 1e6, largest = 1e12;
+  for (const auto& checked :
+       {within("--frames", frames, 0, false, most_frames),
+        within("--deadline", deadline_ms, 0, true, longest_ms),
+        within("--seed", std::optional(seed), 0, false, 9e18),
+        within("--scene-seed", std::optional(scene_seed), 0, false, 9e18),
+        within("--distance", distance_mm, 0, true, longest_mm),
+        within("--scene-distance", scene_distance_mm, 0, true, longest_mm),
+        within("--iterations", iterations, 1, false, most_iterations),
+        within("--threads", threads, 1, false, recon::WorkerThreads::most),
+        within("--lambda", lambda, 0, false, largest),
+        within("--sigma", sigma, 0, false, largest),
+        need(!(lambda && sigma), "--sigma", "cannot go with --lambda: the noise is what lambda would be made from"),
+        need(!(deadline_ms && lossless), "--deadline",
+             "cannot go with --lossless, where frames wait for as long as it takes; leave one of them out"),
+        need(!(deadline_ms && replays() && waits_for_frames()), "--deadline",
+             "needs --pace recorded and no --lossless with --replay, since otherwise frames wait for as long as it "
+             "takes"),
+        need(replays() || replay_pace.empty(), "--pace", "needs --replay FILE"),
+        need(!replays() || record.empty(), "--record", "cannot go with --replay: the frames are in that file already"),
+        need(sheet.empty() || knows_scene(), "--sheet",
+             "needs --scene with --replay: it compares the picture with the scene that was recorded"),
+        need(!(json && show.value_or(false)), "--show",
+             "cannot go with --json: both would write to the standard output"),
+        need(!json || table.empty(), "--table", "cannot go with --json: both would write to the standard output"),
+        need(out.empty() || output_format() != "none", "--out", "does nothing with --format none"),
+        need(!out.empty() || format.empty() || format == "none", "--format", "needs a folder: add --out DIR"),
+        need(!board.empty(), "--board", "is missing, for example --board boards/sim-8x8")}) {
+    if (!checked) return checked;
+  }
+  return {};
+}
+
+std::string RunOptions::output_format() const {
+  if (!format.empty()) return format;
+  return out.empty() ? "none" : "png";
+}
+
+extern const Command run_command;
+const Command run_command{"run", "live pictures from an eye: the runtime itself", OnSignal::ends_in_order, declare,
+                          footer};
+
+}  // namespace compueye::firmware

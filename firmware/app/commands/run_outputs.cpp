@@ -1,0 +1,129 @@
+#include "firmware/app/commands/run_outputs.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "firmware/files/atomic_file.hpp"
+#include "firmware/files/file_error.hpp"
+#include "firmware/sinks/contact_sheet.hpp"
+#include "firmware/sinks/npy_sink.hpp"
+#include "firmware/sinks/png_sequence_sink.hpp"
+#include "firmware/sinks/terminal_sink.hpp"
+#include "firmware/text/number_text.hpp"
+#include "hal/try.hpp"
+#include "recon/option_names.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Hands every frame to several sinks in turn: files first, then the screen. The first refusal counts; a frame refused
+/// by one is not offered to those after it.
+class FanOutSink final : public hal::FrameSink {
+ public:
+  void add(std::unique_ptr<hal::FrameSink> sink) { sinks_.push_back(std::move(sink)); }
+
+  [[nodiscard]] hal::Result<void> open(hal::FrameFormat format) override {
+    for (const auto& sink : sinks_) {
+      if (auto opened = sink->open(format); !opened) {
+        // Whatever was opened before must not leave its beginnings behind.
+        static_cast<void>(close());
+        return opened;
+      }
+    }
+    return {};
+  }
+  [[nodiscard]] hal::Result<void> write(const hal::Frame& frame) override {
+    for (const auto& sink : sinks_) {
+      if (auto written = sink->write(frame); !written) return written;
+    }
+    return {};
+  }
+  [[nodiscard]] hal::Result<void> close() override {
+    hal::Result<void> first;
+    for (const auto& sink : sinks_) {
+      if (auto closed = sink->close(); !closed && first) first = std::move(closed);
+    }
+    return first;
+  }
+
+ private:
+  std::vector<std::unique_ptr<hal::FrameSink>> sinks_;
+};
+
+std::string npy_file(const RunOptions& options) {
+  return options.out + "/frames.npy";
+}
+
+/// In a folder that is made for it.
+hal::Result<void> try_output_below(const std::string& file) {
+  const fs::path folder = fs::path(file).parent_path();
+  std::error_code error;
+  if (!folder.empty()) fs::create_directories(folder, error);
+  if (error) return tl::unexpected(file_error(error.value(), folder, "cannot be made to write into"));
+  return try_output(file);
+}
+
+std::vector<std::string> quality_lines(const std::optional<PictureQuality>& q) {
+  if (!q) return {};
+  return {"NMSE " + significant(q->nmse, 3), "PSNR " + fixed(q->psnr_db, 1) + " dB", "SSIM " + fixed(q->ssim, 3)};
+}
+
+std::string title_of(const RunReport& report) {
+  return fmt::format("{}: {} at {:g} mm", report.eye.board, report.scene, report.distance_mm);
+}
+
+}  // namespace
+
+hal::Result<void> try_outputs(const RunOptions& options) {
+  if (!options.out.empty()) TRY(try_output_below(npy_file(options)));
+  TRY(try_output_below(options.sheet));
+  return try_output_below(options.report);
+}
+
+bool shows_pictures(const RunOptions& options) {
+  if (options.show) return *options.show;
+  return !options.json && options.table.empty() && ::isatty(STDOUT_FILENO) == 1;
+}
+
+std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, const hal::Clock& clock,
+                                           std::vector<std::string>& files) {
+  auto sinks = std::make_unique<FanOutSink>();
+  const std::string format = options.output_format();
+  if (format == "npy") {
+    sinks->add(std::make_unique<NpySink>(npy_file(options)));
+    files.push_back(npy_file(options));
+  } else if (format != "none") {
+    sinks->add(std::make_unique<PngSequenceSink>(options.out, format == "png16" ? 16 : 8));
+    files.push_back(options.out + "/frame-*.png");
+  }
+  if (shows_pictures(options)) {
+    TerminalOptions terminal;
+    terminal.colours = terminal_colours_from_environment();
+    sinks->add(std::make_unique<TerminalSink>(clock, terminal));
+  }
+  return sinks;
+}
+
+hal::Result<void> write_run_sheet(const std::string& path, const RunReport& report, const hal::Image& truth,
+                                  const hal::Image& conventional, const hal::Image& last) {
+  const EyeFigures& eye = report.eye;
+  std::vector<Panel> panels;
+  panels.push_back({"scene", {fmt::format("{} x {} pixels", truth.rows, truth.cols)}, truth});
+  if (!conventional.pixels.empty())
+    panels.push_back({"conventional eye", quality_lines(report.conventional), conventional});
+  Panel ours{fmt::format("reconstruction, frame {}", report.summary.last_frame), quality_lines(report.last_quality),
+             last};
+  ours.figures.push_back(
+      fmt::format("{}, {}, {} iterations", name(eye.point.solver), name(eye.point.basis), eye.point.iterations));
+  panels.push_back(std::move(ours));
+  panels.push_back(TRY(error_panel(last, truth)));
+  return write_contact_sheet(path, title_of(report), panels);
+}
+
+}  // namespace compueye::firmware

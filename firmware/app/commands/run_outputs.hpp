@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "firmware/app/commands/run.hpp"
+#include "firmware/app/commands/run_report.hpp"
+#include "hal/clock.hpp"
+#include "hal/frame_sink.hpp"
+#include "hal/image.hpp"
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// Makes the folders of everything that a run will write and tries whether files can be made there, before minutes of
+/// set-up are spent. Leaves nothing behind but folders. Errors: those of a file that cannot be written.
+[[nodiscard]] hal::Result<void> try_outputs(const RunOptions& options);
+
+/// Whether pictures go to the terminal.
+[[nodiscard]] bool shows_pictures(const RunOptions& options);
+
+/// Every sink the options ask for. `files` gets what will have been written.
+[[nodiscard]] std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, const hal::Clock& clock,
+                                                         std::vector<std::string>& files);
+
+/// The contact sheet of a run: scene | conventional eye | reconstruction (the last delivered frame) | its error, with
+/// their figures. An empty `conventional` picture is left out.
+[[nodiscard]] hal::Result<void> write_run_sheet(const std::string& path, const RunReport& report,
+                                                const hal::Image& truth, const hal::Image& conventional,
+                                                const hal::Image& last);
+
+}  // namespace compueye::firmware

@@ -1,0 +1,74 @@
+#include "firmware/app/commands/run_source.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "firmware/app/commands/recorded_with.hpp"
+#include "firmware/eye/source_list.hpp"
+#include "hal/try.hpp"
+
+namespace compueye::firmware {
+using hal::Result;
+
+Result<RunSource> RunSource::make(const RunOptions& options, const Board& board, const sim::Scene& scene,
+                                  std::uint64_t frames, hal::Clock& clock) {
+  RunSource made;
+  if (options.replays()) {
+    auto replay = TRY(recording::ReplaySource::open(options.replay, options.pace(), clock));
+    TRY(check_fits(replay->describe(), board, options.replay));
+    made.replay_ = replay.get();
+    made.source_ = std::move(replay);
+    return made;
+  }
+  EyeWanted wanted{scene, static_cast<std::uint64_t>(options.seed), options.lossless, std::nullopt};
+  // Without a limit the frames read ahead of the last one would be made only to be thrown away.
+  if (options.lossless && frames > 0) wanted.frame_limit = frames;
+  made.source_ = TRY(board_source(board, std::move(wanted), clock));
+  if (options.record.empty()) return made;
+  recording::RecordingSettings recording;
+  recording.path = options.record;
+  recording.settings = RecordedWith{scene.name, options.scene_seed, options.seed}.text(board);
+  recording.unix_minus_clock_ns = unix_minus(clock);
+  recording.when_full = options.lossless ? recording::WhenFull::wait : recording::WhenFull::skip;
+  made.recorder_ = TRY(recording::RecordingSource::create(std::move(recording), *made.source_, clock));
+  return made;
+}
+
+hal::SampleSource& RunSource::source() noexcept {
+  if (recorder_) return *recorder_;
+  return *source_;
+}
+
+std::string RunSource::name() const {
+  const hal::SourceDescription& d = source_->describe();
+  return d.backend + " " + d.serial + (replay_ != nullptr ? " from " + replay_->recording().place() : std::string());
+}
+
+std::vector<std::string> RunSource::notes() const {
+  std::vector<std::string> notes;
+  if (replay_ != nullptr) {
+    const recording::RecordingDamage& damage = replay_->recording().damage();
+    const std::string& file = replay_->recording().place();
+    if (damage.stretches > 0) {
+      notes.push_back(fmt::format("{}: {} damaged bytes, the first at byte {}, which cost {} frames", file,
+                                  damage.bytes, damage.first_at, damage.blocks));
+    }
+    if (damage.torn_bytes > 0) {
+      notes.push_back(fmt::format("{}: a torn tail of {} bytes from byte {} on is not read", file, damage.torn_bytes,
+                                  damage.torn_at));
+    }
+  }
+  if (recorder_ && recorder_->unrecorded() > 0) {
+    notes.push_back(
+        fmt::format("{}: {} frames are not in it, which did not keep up", recorder_->path(), recorder_->unrecorded()));
+  }
+  return notes;
+}
+
+Result<void> RunSource::recorded() const {
+  if (recorder_ && recorder_->error()) return tl::unexpected(*recorder_->error());
+  return {};
+}
+
+}  // namespace compueye::firmware
