@@ -1,9 +1,9 @@
 #include "recon/reference/reference_solver.hpp"
 
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 
+#include "recon/reference/dense_algebra.hpp"
 #include "recon/reference/interior_point.hpp"
 
 namespace compueye::recon::reference {
@@ -185,7 +185,7 @@ ReferenceResult solve_reference(const Response& response, int image_rows, int im
   Vector x;
   if (objective.lambda == 0.0 && objective.constraint == ConstraintKind::none) {
     const Vector root = w.cwiseSqrt();
-    x = (root.asDiagonal() * a).eval().completeOrthogonalDecomposition().solve(root.cwiseProduct(samples));
+    x = least_squares(root.asDiagonal() * a, root.cwiseProduct(samples));
     result.converged = x.allFinite();
   } else {
     const Matrix psi = basis_matrix(objective.basis, image_rows, image_cols);

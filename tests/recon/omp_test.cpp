@@ -1,9 +1,10 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "recon/reference/dense_algebra.hpp"
 #include "recon/reference/reference_solver.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
@@ -45,7 +46,7 @@ std::vector<double> textbook_omp(const SolverProblem& problem, BasisKind basis, 
     taken.push_back(best);
     Eigen::MatrixXd chosen(atoms.rows(), static_cast<Eigen::Index>(taken.size()));
     for (std::size_t i = 0; i < taken.size(); ++i) chosen.col(static_cast<Eigen::Index>(i)) = atoms.col(taken[i]);
-    amplitudes = chosen.colPivHouseholderQr().solve(b);
+    amplitudes = recon::reference::least_squares(chosen, b);
     residual = b - chosen * amplitudes;
   }
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(atoms.cols());

@@ -1,8 +1,9 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <cmath>
 
+#include "recon/reference/dense_algebra.hpp"
 #include "recon/setup/singular_modes.hpp"
 #include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/relative_difference.hpp"
@@ -49,7 +50,7 @@ SolvedFrame solve_tsvd(const recon::Response& a, int rows, int cols, int rank, c
 TEST_CASE("singular pairs are those of a dense decomposition, parity classes or none") {
   Random random(18);
   for (const recon::Response& a : {symmetric_response(6), random_response(random, 12, 36, 0.5)}) {
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense_matrix(a), Eigen::ComputeThinU);
+    const auto svd = recon::reference::singular_pairs(dense_matrix(a));
     const auto modes = recon::singular_modes(a, 6, 6, 10, 0.0, {});
     REQUIRE(modes.has_value());
     REQUIRE(modes->values.size() == 10);
@@ -58,7 +59,7 @@ TEST_CASE("singular pairs are those of a dense decomposition, parity classes or 
     CHECK((left.transpose() * left - Eigen::MatrixXd::Identity(10, 10)).norm() < 1e-12);
     for (Eigen::Index k = 0; k < 10; ++k) {
       const double s = modes->values[static_cast<std::size_t>(k)];
-      CHECK(s == doctest::Approx(svd.singularValues()[k]).epsilon(1e-9));
+      CHECK(s == doctest::Approx(svd.values[k]).epsilon(1e-9));
       CHECK((dense_matrix(a) * dense_matrix(a).transpose() * left.col(k) - s * s * left.col(k)).norm() < 1e-9 * s * s);
     }
   }
@@ -68,15 +69,15 @@ TEST_CASE("tsvd is the truncated decomposition's answer at every rank") {
   Random random(19);
   for (const recon::Response& a : {symmetric_response(6), random_response(random, 14, 36, 0.6)}) {
     const auto y = random_vector(random, a.rows(), 0.0, 3.0);
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense_matrix(a), Eigen::ComputeThinU | Eigen::ComputeThinV);
+    const auto svd = recon::reference::singular_pairs(dense_matrix(a));
     const auto yf = to_float(y);
     for (const int rank : {1, 2, 7, 12}) {
       Eigen::VectorXd x = Eigen::VectorXd::Zero(36);
       for (int k = 0; k < rank; ++k) {
         double product = 0.0;
         for (int m = 0; m < a.rows(); ++m)
-          product += svd.matrixU()(m, k) * static_cast<double>(yf[static_cast<std::size_t>(m)]);
-        x += svd.matrixV().col(k) * product / svd.singularValues()[k];
+          product += svd.u(m, k) * static_cast<double>(yf[static_cast<std::size_t>(m)]);
+        x += svd.v.col(k) * product / svd.values[k];
       }
       const SolvedFrame frame = solve_tsvd(a, 6, 6, rank, y);
       CHECK(relative_difference(frame.x, to_float({x.data(), x.data() + 36})) < 1e-6);
@@ -99,16 +100,17 @@ TEST_CASE("tsvd with weights is the weighted fit within the leading pairs") {
   weights[2] = weights[9] = weights[23] = 0.0F;
   weights[5] = 0.25F;
   weights[6] = 0.75F;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(dense_matrix(a), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const auto svd = recon::reference::singular_pairs(dense_matrix(a));
   for (const int rank : {3, 10, 18}) {
-    const Eigen::MatrixXd u = svd.matrixU().leftCols(rank);
+    const Eigen::MatrixXd u = svd.u.leftCols(rank);
     Eigen::VectorXd w(24), b(24);
     for (Eigen::Index m = 0; m < 24; ++m) {
       w[m] = static_cast<double>(weights[static_cast<std::size_t>(m)]);
       b[m] = static_cast<double>(yf[static_cast<std::size_t>(m)]);
     }
-    const Eigen::VectorXd d = (u.transpose() * w.asDiagonal() * u).ldlt().solve(u.transpose() * w.cwiseProduct(b));
-    const Eigen::VectorXd x = svd.matrixV().leftCols(rank) * d.cwiseQuotient(svd.singularValues().head(rank));
+    const Eigen::VectorXd d =
+        recon::reference::least_squares(u.transpose() * w.asDiagonal() * u, u.transpose() * w.cwiseProduct(b));
+    const Eigen::VectorXd x = svd.v.leftCols(rank) * d.cwiseQuotient(svd.values.head(rank));
     CHECK(relative_difference(solve_tsvd(a, 6, 6, rank, y, weights).x, to_float({x.data(), x.data() + 36})) < 1e-4);
   }
 }
@@ -116,7 +118,7 @@ TEST_CASE("tsvd with weights is the weighted fit within the leading pairs") {
 TEST_CASE("the rank follows lambda where none is given, and impossible ones are refused by name") {
   Random random(21);
   const auto a = random_response(random, 12, 36, 0.6);
-  const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(dense_matrix(a)).singularValues();
+  const Eigen::VectorXd s = recon::reference::singular_pairs(dense_matrix(a)).values;
   const auto by_lambda = recon::singular_modes(a, 6, 6, 0, s[4] * s[4] * 0.999, {});
   REQUIRE(by_lambda.has_value());
   CHECK(by_lambda->values.size() == 5);

@@ -1,9 +1,10 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "recon/reference/dense_algebra.hpp"
 #include "recon/reference/reference_solver.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
@@ -131,8 +132,7 @@ TEST_CASE("adm as published is right where it was meant to be: on orthonormal ro
   Random random(43);
   Eigen::MatrixXd raw(20, 48);
   for (Eigen::Index k = 0; k < raw.size(); ++k) raw.data()[k] = random.normal();
-  const Eigen::MatrixXd q =
-      Eigen::HouseholderQR<Eigen::MatrixXd>(raw.transpose()).householderQ() * Eigen::MatrixXd::Identity(48, 20);
+  const Eigen::MatrixXd q = recon::reference::singular_pairs(raw.transpose()).u;
   std::vector<double> values(q.data(), q.data() + q.size());  // column-major 48 x 20 is row-major 20 x 48
   const auto a = recon::Response::from_dense(20, 48, values).value();
   std::vector<double> truth(48, 0.0), y(20);

@@ -1,0 +1,11 @@
+#include <Eigen/QR>
+
+#include "recon/reference/dense_algebra.hpp"
+
+namespace compueye::recon::reference {
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  return a.completeOrthogonalDecomposition().solve(b);
+}
+
+}  // namespace compueye::recon::reference

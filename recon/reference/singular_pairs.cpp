@@ -1,0 +1,12 @@
+#include <Eigen/SVD>
+
+#include "recon/reference/dense_algebra.hpp"
+
+namespace compueye::recon::reference {
+
+SingularPairs singular_pairs(const Eigen::MatrixXd& a) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
+}
+
+}  // namespace compueye::recon::reference
