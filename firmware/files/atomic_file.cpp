@@ -159,6 +159,13 @@ hal::Result<void> try_output(const std::string& path) {
   return AtomicFile::create(path).map([](const AtomicFile&) {});
 }
 
+hal::Result<void> make_folder(const std::string& folder, std::string_view trouble) {
+  std::error_code ec;
+  if (!folder.empty()) std::filesystem::create_directories(folder, ec);
+  if (ec) return tl::unexpected(file_error(ec.value(), folder, trouble));
+  return {};
+}
+
 hal::Result<void> write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   auto file = AtomicFile::create(path);
   if (!file) return tl::unexpected(std::move(file.error()));

@@ -70,6 +70,9 @@ class AtomicFile {
 /// trial; an empty path is no file, and fine. Errors: those of AtomicFile::create().
 [[nodiscard]] hal::Result<void> try_output(const std::string& path);
 
+/// Makes a folder, and those it lies in, unless it is there; an empty path is fine. `trouble` is what an error says.
+[[nodiscard]] hal::Result<void> make_folder(const std::string& folder, std::string_view trouble = "cannot be made");
+
 /// create, write, commit.
 [[nodiscard]] hal::Result<void> write_file_atomically(const std::filesystem::path& path,
                                                       std::span<const std::byte> bytes);

@@ -11,6 +11,7 @@
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/file_descriptor.hpp"
 #include "firmware/files/file_error.hpp"
+#include "hal/try.hpp"
 #include "xxhash.h"
 
 namespace compueye::firmware {
@@ -179,9 +180,7 @@ Result<void> store_factor(const std::filesystem::path& folder, const FactorKey& 
                          std::to_string(most_values(key)) + " of order " + std::to_string(key.order) +
                          " and the rho, metric and rank of its key");
   }
-  std::error_code ec;
-  std::filesystem::create_directories(folder, ec);
-  if (ec) return tl::unexpected(file_error(ec.value(), folder, "cannot be made to store a factor in"));
+  TRY(make_folder(folder, "cannot be made to store a factor in"));
   const auto payload = std::as_bytes(std::span(factor.values));
   const Header header = header_for(key, factor.values.size(), XXH3_64bits(payload.data(), payload.size()));
   auto file = AtomicFile::create(path);

@@ -247,11 +247,11 @@ Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const
   return canvas.take();
 }
 
-Result<void> write_contact_sheet(const std::filesystem::path& path, const std::string& title,
-                                 std::span<const Panel> panels, int min_panel_pixels) {
+Result<void> write_contact_sheet(const std::string& path, const std::string& title, std::span<const Panel> panels,
+                                 int min_panel_pixels) {
   auto sheet = compose_contact_sheet(title, panels, min_panel_pixels);
   if (!sheet) {
-    sheet.error().place = path.string();
+    sheet.error().place = path;
     return tl::unexpected(std::move(sheet.error()));
   }
   return write_png(path, *sheet);

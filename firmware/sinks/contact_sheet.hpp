@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,7 +40,7 @@ struct Panel {
                                                           int min_panel_pixels = 320);
 
 /// compose_contact_sheet() into a PNG, atomically.
-[[nodiscard]] hal::Result<void> write_contact_sheet(const std::filesystem::path& path, const std::string& title,
+[[nodiscard]] hal::Result<void> write_contact_sheet(const std::string& path, const std::string& title,
                                                     std::span<const Panel> panels, int min_panel_pixels = 320);
 
 }  // namespace compueye::firmware

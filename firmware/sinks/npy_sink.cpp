@@ -1,9 +1,10 @@
 #include "firmware/sinks/npy_sink.hpp"
 
-#include <system_error>
+#include <filesystem>
 #include <utility>
 
-#include "firmware/files/file_error.hpp"
+#include "firmware/files/atomic_file.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 
@@ -12,18 +13,14 @@ NpySink::~NpySink() {
 }
 
 hal::Result<void> NpySink::open(hal::FrameFormat format) {
-  if (writer_) return hal::fail(hal::ErrorCode::usage, path_.string(), "is already open, expected a close() first");
-  std::error_code ec;
-  if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), ec);
-  if (ec) return tl::unexpected(file_error(ec.value(), path_.parent_path(), "cannot be made"));
-  auto writer = NpyFrameWriter::create(path_, format.rows, format.cols);
-  if (!writer) return tl::unexpected(std::move(writer.error()));
-  writer_.emplace(std::move(*writer));
+  if (writer_) return hal::fail(hal::ErrorCode::usage, path_, "is already open, expected a close() first");
+  TRY(make_folder(std::filesystem::path(path_).parent_path()));
+  writer_.emplace(TRY(NpyFrameWriter::create(path_, format.rows, format.cols)));
   return {};
 }
 
 hal::Result<void> NpySink::write(const hal::Frame& frame) {
-  if (!writer_) return hal::fail(hal::ErrorCode::usage, path_.string(), "is not open, expected an open() first");
+  if (!writer_) return hal::fail(hal::ErrorCode::usage, path_, "is not open, expected an open() first");
   return writer_->write(frame.pixels);
 }
 

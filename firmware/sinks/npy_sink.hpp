@@ -1,7 +1,8 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "firmware/files/npy_frame_writer.hpp"
 #include "hal/frame_sink.hpp"
@@ -13,7 +14,7 @@ namespace compueye::firmware {
 class NpySink final : public hal::FrameSink {
  public:
   /// The folder of `file` is made when it is missing.
-  explicit NpySink(std::filesystem::path file) : path_(std::move(file)) {}
+  explicit NpySink(std::string file) : path_(std::move(file)) {}
   NpySink(const NpySink&) = delete;
   NpySink& operator=(const NpySink&) = delete;
   ~NpySink() override;
@@ -24,7 +25,7 @@ class NpySink final : public hal::FrameSink {
   [[nodiscard]] hal::Result<void> close() override;
 
  private:
-  std::filesystem::path path_;
+  std::string path_;
   std::optional<NpyFrameWriter> writer_;
 };
 

@@ -6,11 +6,12 @@
 #include <cerrno>
 #include <cinttypes>
 #include <cstdio>
-#include <system_error>
 #include <utility>
 
+#include "firmware/files/atomic_file.hpp"
 #include "firmware/files/file_descriptor.hpp"
 #include "firmware/files/file_error.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -41,27 +42,24 @@ PngSequenceSink::~PngSequenceSink() {
 }
 
 hal::Result<void> PngSequenceSink::open(hal::FrameFormat format) {
-  const std::string place = folder_.string();
-  if (encoder_) return hal::fail(hal::ErrorCode::usage, place, "is already open, expected a close() first");
+  if (encoder_) return hal::fail(hal::ErrorCode::usage, folder_, "is already open, expected a close() first");
   if (bits_ != 8 && bits_ != 16) {
-    return hal::fail(hal::ErrorCode::usage, place,
+    return hal::fail(hal::ErrorCode::usage, folder_,
                      "was to get PNGs of " + std::to_string(bits_) + " bits, expected 8 or 16");
   }
-  auto encoder = PngEncoder::create(format.rows, format.cols, bits_ == 8 ? PngFormat::grey8 : PngFormat::grey16);
-  if (!encoder) return tl::unexpected(std::move(encoder.error()));
-  name_.assign(place.size() + longest_suffix, '\0');
-  partial_.assign(place.size() + longest_suffix, '\0');
-  if (auto ok = try_folder(); !ok) return ok;
+  PngEncoder encoder =
+      TRY(PngEncoder::create(format.rows, format.cols, bits_ == 8 ? PngFormat::grey8 : PngFormat::grey16));
+  name_.assign(folder_.size() + longest_suffix, '\0');
+  partial_.assign(folder_.size() + longest_suffix, '\0');
+  TRY(try_folder());
   format_ = format;
-  encoder_.emplace(std::move(*encoder));
+  encoder_.emplace(std::move(encoder));
   return {};
 }
 
 hal::Result<void> PngSequenceSink::try_folder() {
-  std::error_code ec;
-  std::filesystem::create_directories(folder_, ec);
-  if (ec) return tl::unexpected(file_error(ec.value(), folder_, "cannot be made"));
-  print_name(partial_, folder_.string(), 0, ".png.partial");
+  TRY(make_folder(folder_));
+  print_name(partial_, folder_, 0, ".png.partial");
   FileDescriptor probe(::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
   if (!probe.is_open()) return tl::unexpected(file_error(errno, folder_, "cannot take pictures"));
   ::unlink(partial_.c_str());
@@ -69,19 +67,18 @@ hal::Result<void> PngSequenceSink::try_folder() {
 }
 
 hal::Result<void> PngSequenceSink::write(const hal::Frame& frame) {
-  if (!encoder_) return hal::fail(hal::ErrorCode::usage, folder_.string(), "is not open, expected an open() first");
+  if (!encoder_) return hal::fail(hal::ErrorCode::usage, folder_, "is not open, expected an open() first");
   const std::size_t pixels = static_cast<std::size_t>(format_.rows) * static_cast<std::size_t>(format_.cols);
   if (frame.pixels.size() != pixels) {
-    return hal::fail(hal::ErrorCode::usage, folder_.string(),
+    return hal::fail(hal::ErrorCode::usage, folder_,
                      "was given a picture of " + std::to_string(frame.pixels.size()) + " pixels, expected " +
                          std::to_string(pixels));
   }
   encoder_->set_grey(frame.pixels);
-  const auto bytes = encoder_->encode();
-  if (!bytes) return tl::unexpected(bytes.error());
-  print_name(partial_, folder_.native(), frame.frame, ".png.partial");
-  print_name(name_, folder_.native(), frame.frame, ".png");
-  const int error_number = write_and_rename(partial_.c_str(), name_.c_str(), *bytes);
+  const auto bytes = TRY(encoder_->encode());
+  print_name(partial_, folder_, frame.frame, ".png.partial");
+  print_name(name_, folder_, frame.frame, ".png");
+  const int error_number = write_and_rename(partial_.c_str(), name_.c_str(), bytes);
   if (error_number != 0) return tl::unexpected(file_error(error_number, name_.c_str(), "cannot be written"));
   return {};
 }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "firmware/files/png_encoder.hpp"
 #include "hal/frame_sink.hpp"
@@ -18,7 +18,7 @@ namespace compueye::firmware {
 class PngSequenceSink final : public hal::FrameSink {
  public:
   /// `bits` is 8 or 16.
-  explicit PngSequenceSink(std::filesystem::path folder, int bits = 8) : folder_(std::move(folder)), bits_(bits) {}
+  explicit PngSequenceSink(std::string folder, int bits = 8) : folder_(std::move(folder)), bits_(bits) {}
   PngSequenceSink(const PngSequenceSink&) = delete;
   PngSequenceSink& operator=(const PngSequenceSink&) = delete;
   ~PngSequenceSink() override;
@@ -32,7 +32,7 @@ class PngSequenceSink final : public hal::FrameSink {
  private:
   [[nodiscard]] hal::Result<void> try_folder();
 
-  std::filesystem::path folder_;
+  std::string folder_;
   int bits_;
   hal::FrameFormat format_;
   std::optional<PngEncoder> encoder_;

@@ -119,6 +119,33 @@ TEST_CASE("a symbolic link stays one and the file behind it is replaced") {
   CHECK(folder.entries() == 2);
 }
 
+TEST_CASE("trying an output leaves nothing behind and makes no folder") {
+  const TemporaryFolder folder;
+  folder.file("old", "kept");
+  CHECK(try_output("").has_value());
+  CHECK(try_output(folder / "new").has_value());
+  CHECK(try_output(folder / "old").has_value());
+  CHECK(bytes_of(folder / "old") == "kept");
+  CHECK(folder.entries() == 1);
+  const auto tried = try_output(folder / "missing/new");
+  REQUIRE_FALSE(tried.has_value());
+  CHECK(tried.error().code == ErrorCode::not_found);
+  CHECK(tried.error().place == (folder / "missing/new").string());
+}
+
+TEST_CASE("a folder is made with those it lies in, or named") {
+  const TemporaryFolder folder;
+  folder.file("file", "x");
+  CHECK(make_folder("").has_value());
+  CHECK(make_folder(folder / "a/b").has_value());
+  CHECK(make_folder(folder / "a/b").has_value());
+  CHECK(std::filesystem::is_directory(folder / "a/b"));
+  const auto made = make_folder(folder / "file/sub");
+  REQUIRE_FALSE(made.has_value());
+  CHECK(made.error().code == ErrorCode::not_found);
+  CHECK(made.error().place == (folder / "file/sub").string());
+}
+
 TEST_CASE("overwrite and truncate change what was written") {
   const TemporaryFolder folder;
   auto file = AtomicFile::create(folder / "a").value();

@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "firmware/files/npy.hpp"
 #include "firmware/files/png.hpp"
 #include "firmware/sinks/npy_sink.hpp"
-#include "firmware/sinks/null_sink.hpp"
 #include "firmware/sinks/png_sequence_sink.hpp"
+#include "firmware/sinks/sink_list.hpp"
 #include "firmware/sinks/terminal_sink.hpp"
 #include "hal/clock.hpp"
 #include "tests/firmware/temporary_folder.hpp"
@@ -103,13 +105,39 @@ TEST_CASE("every sink refuses to write before open() and closes as often as aske
   }
 }
 
-TEST_CASE("the null sink counts") {
-  NullSink sink;
-  REQUIRE(sink.open({2, 2}).has_value());
-  const std::vector<float> pixels(4);
-  for (int i = 0; i < 3; ++i) CHECK(sink.write(frame_of(pixels, {2, 2})).has_value());
-  CHECK(sink.frames() == 3);
-  CHECK(sink.close().has_value());
+TEST_CASE("every row of the list makes what it says, and what lies in the folder has the name it says") {
+  const hal::VirtualClock clock;
+  std::set<std::string_view> names;
+  for (const SinkRow& row : sink_list()) {
+    CAPTURE(row.name);
+    CHECK(names.insert(row.name).second);
+    CHECK((find_sink(row.name) == &row));
+    CHECK(row.in_folder == !row.files.empty());
+    if (!row.in_folder) continue;
+    const TemporaryFolder folder;
+    const auto sink = row.make(folder / "made", clock);
+    const std::vector<float> pixels(6, 0.5F);
+    REQUIRE(sink->open({2, 3}).has_value());
+    REQUIRE(sink->write(frame_of(pixels, {2, 3})).has_value());
+    REQUIRE(sink->close().has_value());
+    const std::string pattern(row.files);
+    const std::string beginning = pattern.substr(0, pattern.find('*'));
+    REQUIRE(std::distance(std::filesystem::directory_iterator(folder / "made"), {}) == 1);
+    const std::string made = std::filesystem::directory_iterator(folder / "made")->path().filename().string();
+    CHECK(made.starts_with(beginning));
+    CHECK(made.ends_with(pattern.substr(pattern.find('.'))));
+  }
+  CHECK((find_sink("jpeg") == nullptr));
+}
+
+TEST_CASE("the formats are the rows that keep files, and none") {
+  const std::vector<std::string_view> formats = sink_formats();
+  CHECK(formats == std::vector<std::string_view>{"png", "png16", "npy", "none"});
+  const std::string text = sink_formats_text();
+  for (const std::string_view format : formats) CHECK(text.find(format) != std::string::npos);
+  CHECK((find_sink("none")->make == nullptr));
+  const hal::VirtualClock clock;
+  CHECK((find_sink("terminal")->make("", clock) != nullptr));
 }
 
 TEST_CASE("the npy sink keeps every frame as it came") {
@@ -200,15 +228,13 @@ TEST_CASE("no sink allocates while frames flow") {
   const TemporaryFolder folder;
   const Pipe pipe;
   hal::VirtualClock clock;
-  NullSink null;
   NpySink npy(folder / "x.npy");
   PngSequenceSink png8(folder / "png8"), png16(folder / "png16", 16);
   TerminalSink terminal(clock, small_terminal(pipe));
   const std::vector<float> pixels(160 * 160, 0.3F);
   const FrameFormat format{160, 160};
-  for (hal::FrameSink* sink :
-       {static_cast<hal::FrameSink*>(&null), static_cast<hal::FrameSink*>(&npy), static_cast<hal::FrameSink*>(&png8),
-        static_cast<hal::FrameSink*>(&png16), static_cast<hal::FrameSink*>(&terminal)}) {
+  for (hal::FrameSink* sink : {static_cast<hal::FrameSink*>(&npy), static_cast<hal::FrameSink*>(&png8),
+                               static_cast<hal::FrameSink*>(&png16), static_cast<hal::FrameSink*>(&terminal)}) {
     REQUIRE(sink->open(format).has_value());
     const tests::HeapUse before = tests::heap_use_of_this_thread();
     bool ok = true;

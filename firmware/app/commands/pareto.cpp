@@ -6,14 +6,12 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "firmware/app/command.hpp"
 #include "firmware/app/commands/pareto_report.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/files/atomic_file.hpp"
-#include "firmware/files/file_error.hpp"
 #include "firmware/operating_points/stored_points.hpp"
 #include "hal/try.hpp"
 #include "studies/accuracy_and_time/sweep.hpp"
@@ -33,9 +31,7 @@ struct ParetoRequest : SweepOptions {
 /// That the folder takes a file is found out before the long work, not after it.
 Result<void> try_folder(const std::string& folder) {
   if (folder.empty()) return {};
-  std::error_code ec;
-  std::filesystem::create_directories(folder, ec);
-  if (ec) return tl::unexpected(file_error(ec.value(), folder, "cannot be made"));
+  TRY(make_folder(folder));
   return try_output(folder + "/pareto.csv");
 }
 

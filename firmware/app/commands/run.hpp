@@ -21,7 +21,7 @@ struct RunOptions {
   std::optional<double> distance_mm;   ///< of the object plane and the scene on it
   std::optional<double> scene_distance_mm;  ///< of the scene alone
   std::string out;                          ///< folder for pictures
-  std::string format;                       ///< png, png16, npy or none; empty: png with `out`, else none
+  std::string format;                       ///< a word of sink_formats(); empty: png with `out`, else none
   std::optional<bool> show;                 ///< absent: when stdout is a terminal
   bool lossless = false;
   std::string replay;       ///< a recording instead of the board's eye; empty: none

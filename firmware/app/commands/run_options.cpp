@@ -5,6 +5,7 @@
 #include "firmware/app/command.hpp"
 #include "firmware/app/commands/run.hpp"
 #include "firmware/eye/scene_choice.hpp"
+#include "firmware/sinks/sink_list.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
@@ -73,8 +74,7 @@ void add_solver_options(OptionList& options, RunOptions& o) {
 
 void add_output_options(OptionList& options, RunOptions& o) {
   options.add("--out", o.out, "folder for the pictures; made when missing");
-  options.add("--format", o.format, "png (default with --out), png16, npy (one file frames.npy) or none")
-      .where(one_of({"png", "png16", "npy", "none"}));
+  options.add("--format", o.format, sink_formats_text()).where(one_of(sink_formats()));
   options.add("--sheet", o.sheet, "contact sheet PNG: scene, conventional eye, reconstruction, error");
   options.add("--report", o.report, "file for the object that --json prints");
   options.add("--table", o.table, "print a table instead: its header only, this run's row, or both")

@@ -4,23 +4,17 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include "firmware/files/atomic_file.hpp"
-#include "firmware/files/file_error.hpp"
 #include "firmware/sinks/contact_sheet.hpp"
-#include "firmware/sinks/npy_sink.hpp"
-#include "firmware/sinks/png_sequence_sink.hpp"
-#include "firmware/sinks/terminal_sink.hpp"
+#include "firmware/sinks/sink_list.hpp"
 #include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
 
 namespace compueye::firmware {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Hands every frame to several sinks in turn: files first, then the screen. The first refusal counts; a frame refused
 /// by one is not offered to those after it.
@@ -56,16 +50,9 @@ class FanOutSink final : public hal::FrameSink {
   std::vector<std::unique_ptr<hal::FrameSink>> sinks_;
 };
 
-std::string npy_file(const RunOptions& options) {
-  return options.out + "/frames.npy";
-}
-
 /// In a folder that is made for it.
 hal::Result<void> try_output_below(const std::string& file) {
-  const fs::path folder = fs::path(file).parent_path();
-  std::error_code error;
-  if (!folder.empty()) fs::create_directories(folder, error);
-  if (error) return tl::unexpected(file_error(error.value(), folder, "cannot be made to write into"));
+  TRY(make_folder(std::filesystem::path(file).parent_path(), "cannot be made to write into"));
   return try_output(file);
 }
 
@@ -81,7 +68,7 @@ std::string title_of(const RunReport& report) {
 }  // namespace
 
 hal::Result<void> try_outputs(const RunOptions& options) {
-  if (!options.out.empty()) TRY(try_output_below(npy_file(options)));
+  if (!options.out.empty()) TRY(try_output_below(options.out + "/frames.npy"));
   TRY(try_output_below(options.sheet));
   return try_output_below(options.report);
 }
@@ -94,19 +81,12 @@ bool shows_pictures(const RunOptions& options) {
 std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, const hal::Clock& clock,
                                            std::vector<std::string>& files) {
   auto sinks = std::make_unique<FanOutSink>();
-  const std::string format = options.output_format();
-  if (format == "npy") {
-    sinks->add(std::make_unique<NpySink>(npy_file(options)));
-    files.push_back(npy_file(options));
-  } else if (format != "none") {
-    sinks->add(std::make_unique<PngSequenceSink>(options.out, format == "png16" ? 16 : 8));
-    files.push_back(options.out + "/frame-*.png");
+  const SinkRow& format = *find_sink(options.output_format());
+  if (format.make != nullptr) {
+    sinks->add(format.make(options.out, clock));
+    files.push_back(options.out + "/" + std::string(format.files));
   }
-  if (shows_pictures(options)) {
-    TerminalOptions terminal;
-    terminal.colours = terminal_colours_from_environment();
-    sinks->add(std::make_unique<TerminalSink>(clock, terminal));
-  }
+  if (shows_pictures(options)) sinks->add(find_sink("terminal")->make({}, clock));
   return sinks;
 }
 

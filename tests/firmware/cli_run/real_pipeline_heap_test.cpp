@@ -8,7 +8,6 @@
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/pipeline/pipeline.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
-#include "firmware/sinks/null_sink.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
 using namespace compueye;
@@ -33,6 +32,14 @@ class CountingObserver final : public FrameObserver {
  private:
   FrameKeeper& keeper_;
   HeapUse before_;
+};
+
+/// Takes every frame and keeps none.
+class NullSink final : public hal::FrameSink {
+ public:
+  hal::Result<void> open(hal::FrameFormat) override { return {}; }
+  hal::Result<void> write(const hal::Frame&) override { return {}; }
+  hal::Result<void> close() override { return {}; }
 };
 
 }  // namespace
