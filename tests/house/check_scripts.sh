@@ -10,6 +10,7 @@ state=$place/state # what the stand-ins remember
 project=$place/project
 mkdir -p "$shims" "$state" "$project"
 cp -r tools "$project/"
+mkdir "$project/bench" && cp bench/CMakeLists.txt "$project/bench/"
 passed=0
 failed=0
 
@@ -213,6 +214,10 @@ run mcu M3
 expect "mcu refuses an unknown core" 2 "unknown core 'M3'"
 run mcu --case
 expect "mcu --case wants a value" 2 'needs a value'
+run bench --fast
+expect "bench refuses an unknown option before a name" 2 "unknown option '--fast'"
+run bench toaster
+expect "bench refuses an unknown measurement and names those there are" 2 "unknown measurement 'toaster'.*frame"
 run demo --out
 expect "demo --out wants a folder" 2 'needs a folder'
 
