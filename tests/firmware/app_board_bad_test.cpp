@@ -232,7 +232,7 @@ TEST_CASE("keys that contradict each other are told on the line of one of them")
       {"interommatidial_angle_deg = 1.5",
        "lattice = \"tangent\"\ninterommatidial_angle_deg = 20",
        7,
-       {"interommatidial_angle_deg", "[eye]", "20.000000"},
+       {"interommatidial_angle_deg", "[eye]", "20"},
        ErrorCode::out_of_range},
       {"rows = 8\ncolumns = 10",
        "rows = 1\ncolumns = 2\nlattice = \"fisheye\"",

@@ -6,34 +6,43 @@
 
 namespace compueye::test {
 
-/// What a program that failed left behind: `ended` has exit_code, timed_out, out and err. On stderr stands one line,
-/// "compueye: PLACE: SENTENCE", where an empty `place` leaves open where the values are named. On stdout stands
-/// nothing, or the error as an object, with the same place and sentence: what --json asks for.
+/// What a program that failed leaves: the exit code of `code`, and on stderr one line, "compueye: PLACE: SENTENCE".
+/// With an empty `place` the values may be named anywhere in it. Returns "PLACE: SENTENCE". `Ended` is what a Program
+/// gives.
 template <class Ended>
-void check_failed(const Ended& ended, hal::ErrorCode code, const std::string& place, const Named& named) {
-  CAPTURE(ended.out);
-  CAPTURE(ended.err);
+std::string check_failure_told(const Ended& ended, hal::ErrorCode code, const std::string& place, const Named& named) {
   CHECK_FALSE(ended.timed_out);
   CHECK(ended.exit_code == (code == hal::ErrorCode::usage ? 2 : 1));
-  const std::string begin = "compueye: " + (place.empty() ? "" : place + ": ");
-  REQUIRE(ended.err.starts_with(begin));
+  const std::string who = "compueye: ", begin = place.empty() ? "" : place + ": ";
+  REQUIRE(ended.err.starts_with(who));
   REQUIRE(ended.err.ends_with('\n'));
-  const std::string sentence = ended.err.substr(begin.size(), ended.err.size() - begin.size() - 1);
-  check_sentence(sentence, named);
-  if (ended.out.empty()) return;
-  const auto json = nlohmann::json::parse(ended.out, nullptr, false);
-  REQUIRE(json.contains("error"));
-  const auto& error = json["error"];
-  CHECK(error["code"] == hal::name(code));
-  if (!place.empty()) CHECK(error["place"] == place);
-  CHECK(sentence.ends_with(error["sentence"].template get<std::string>()));
+  const std::string told = ended.err.substr(who.size(), ended.err.size() - who.size() - 1);
+  CHECK(told.starts_with(begin));
+  check_sentence(told.starts_with(begin) ? told.substr(begin.size()) : told, named);
+  return told;
 }
 
-/// The same of a program that was told --json: the object must be there.
+/// The same, and nothing on stdout.
+template <class Ended>
+void check_failed(const Ended& ended, hal::ErrorCode code, const std::string& place, const Named& named) {
+  CAPTURE(ended.err);
+  check_failure_told(ended, code, place, named);
+  CHECK(ended.out.empty());
+}
+
+/// The same of a program that was told --json: on stdout stands the error as an object, which says what stderr says.
 template <class Ended>
 void check_failed_json(const Ended& ended, hal::ErrorCode code, const std::string& place, const Named& named) {
-  CHECK_FALSE(ended.out.empty());
-  check_failed(ended, code, place, named);
+  CAPTURE(ended.err);
+  CAPTURE(ended.out);
+  const std::string told = check_failure_told(ended, code, place, named);
+  const auto json = nlohmann::json::parse(ended.out, nullptr, false);
+  REQUIRE(json.contains("error"));
+  const nlohmann::json& error = json["error"];
+  CHECK(error["code"] == hal::name(code));
+  const auto there = error["place"].template get<std::string>(),
+             sentence = error["sentence"].template get<std::string>();
+  CHECK((there.empty() ? "" : there + ": ") + sentence == told);
 }
 
 }  // namespace compueye::test

@@ -16,7 +16,8 @@ namespace compueye::test {
 /// that ends in '?' is one that the sentence proposes: "admm?" is "... 'admm'?".
 using Named = std::vector<std::string>;
 
-/// Whether `text` names `value` as a token of its own: 1 is not in 16, -1 or 0.1, and box is not in --box.
+/// Whether `text` names `value` as a token of its own: 1 is not in 16, -1 or 0.1, and box is not in --box. A number may
+/// be written with more zeros: 0.5 is in 0.500.
 [[nodiscard]] inline bool names(std::string_view text, std::string_view value) {
   if (value.size() > 1 && value.back() == '?') {
     const std::string name(value.substr(0, value.size() - 1));
@@ -28,8 +29,14 @@ using Named = std::vector<std::string>;
   const auto at = [&](std::size_t n) { return n < text.size() ? text[n] : ' '; };  // before the first wraps around
   if (value.empty()) return false;
   const bool opens = of_word(value.front()) || value.front() == '.', closes = of_word(value.back());
+  const auto digits_after = value.find_first_not_of("0123456789", value.front() == '-' ? 1 : 0);
+  const bool is_whole = digits_after == std::string_view::npos;
+  const bool is_decimal = !is_whole && value[digits_after] == '.' && digits_after + 1 < value.size() &&
+                          value.find_first_not_of("0123456789", digits_after + 1) == std::string_view::npos;
   for (std::size_t from = text.find(value); from != std::string_view::npos; from = text.find(value, from + 1)) {
-    const std::size_t end = from + value.size();
+    std::size_t end = from + value.size();
+    if (is_whole && at(end) == '.' && at(end + 1) == '0') ++end;
+    while ((is_decimal || end > from + value.size()) && at(end) == '0') ++end;
     const bool goes_back = of_word(at(from - 1)) || (at(from - 1) == '.' && of_word(at(from - 2)));
     const bool goes_on = of_word(at(end)) || (at(end) == '.' && of_word(at(end + 1)));
     if (!(opens && goes_back) && !(closes && goes_on)) return true;

@@ -9,6 +9,7 @@
 namespace {
 
 using namespace compueye::test;
+using compueye::hal::ErrorCode;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -16,7 +17,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 struct Case {
   std::string_view name;
   std::function<void(const TemporaryFolder&)> damage;
-  std::vector<std::string> fragments;
+  ErrorCode code;
+  std::string place;
+  Named named;
 };
 
 std::string good_npy() {
@@ -26,147 +29,205 @@ std::string good_npy() {
 
 }  // namespace
 
-TEST_CASE("samples that cannot be read are refused in one sentence") {
+TEST_CASE("samples that cannot be read are refused by place and value") {
   const Case cases[] = {
-      {"missing", [](const auto& f) { std::filesystem::remove(f / "y.npy"); }, {"y.npy", "does not exist"}},
+      {"missing", [](const auto& f) { std::filesystem::remove(f / "y.npy"); }, ErrorCode::not_found, "y.npy", {}},
       {"a folder",
        [](const auto& f) {
          std::filesystem::remove(f / "y.npy");
          std::filesystem::create_directory(f / "y.npy");
        },
-       {"y.npy"}},
-      {"empty", [](const auto& f) { f.file("y.npy", ""); }, {"y.npy", "empty file"}},
-      {"text", [](const auto& f) { f.file("y.npy", "1\n2\n3\n"); }, {"y.npy", "not a NumPy"}},
-      {"cut in the header", [](const auto& f) { f.file("y.npy", good_npy().substr(0, 40)); }, {"y.npy", "truncated"}},
+       ErrorCode::io,
+       "y.npy",
+       {}},
+      {"empty", [](const auto& f) { f.file("y.npy", ""); }, ErrorCode::bad_format, "y.npy", {"NumPy", ".npy"}},
+      {"text", [](const auto& f) { f.file("y.npy", "1\n2\n3\n"); }, ErrorCode::bad_format, "y.npy", {"NumPy", ".npy"}},
+      {"cut in the header",
+       [](const auto& f) { f.file("y.npy", good_npy().substr(0, 40)); },
+       ErrorCode::bad_format,
+       "y.npy",
+       {"118", "30"}},
       {"cut in the data",
        [](const auto& f) { f.file("y.npy", good_npy().substr(0, good_npy().size() - 3)); },
-       {"y.npy", "truncated", "24 bytes"}},
-      {"too long", [](const auto& f) { f.file("y.npy", good_npy() + "x"); }, {"y.npy", "24 bytes"}},
+       ErrorCode::bad_format,
+       "y.npy",
+       {"24", "21"}},
+      {"too long",
+       [](const auto& f) { f.file("y.npy", good_npy() + "x"); },
+       ErrorCode::bad_format,
+       "y.npy",
+       {"24", "(3,)"}},
       {"big-endian",
        [](const auto& f) { put_raw_npy(f, "y.npy", ">f8", "(3,)", std::string(24, '\0')); },
-       {"y.npy", "big-endian"}},
+       ErrorCode::unsupported,
+       "y.npy",
+       {"big-endian", ">f8"}},
       {"Fortran order",
        [](const auto& f) { put_raw_npy(f, "y.npy", "<f8", "(1, 3)", std::string(24, '\0'), true); },
-       {"y.npy", "Fortran"}},
+       ErrorCode::unsupported,
+       "y.npy",
+       {"Fortran"}},
       {"complex",
        [](const auto& f) { put_raw_npy(f, "y.npy", "<c16", "(3,)", std::string(48, '\0')); },
-       {"y.npy", "complex"}},
+       ErrorCode::unsupported,
+       "y.npy",
+       {"<c16"}},
       {"string",
        [](const auto& f) { put_raw_npy(f, "y.npy", "<U2", "(3,)", std::string(24, '\0')); },
-       {"y.npy", "<U2"}},
+       ErrorCode::unsupported,
+       "y.npy",
+       {"<U2"}},
       {"three axes",
        [](const auto& f) {
          put_npy(f, "y.npy", {1, 1, 3}, {1, 2, 3});
        },
-       {"y.npy", "(1, 1, 3)", "(M,)"}},
-      {"no elements", [](const auto& f) { put_raw_npy(f, "y.npy", "<f8", "(0, 3)", ""); }, {"y.npy", "empty"}},
+       ErrorCode::mismatch,
+       "y.npy",
+       {"(1, 1, 3)", "(M,)"}},
+      {"no elements",
+       [](const auto& f) { put_raw_npy(f, "y.npy", "<f8", "(0, 3)", ""); },
+       ErrorCode::out_of_range,
+       "y.npy",
+       {"(0, 3)"}},
       {"inexact integers",
        [](const auto& f) {
          put_raw_npy(f, "y.npy", "<i8", "(3,)", raw<std::int64_t>({1, 2, (std::int64_t{1} << 53) + 1}));
        },
-       {"y.npy", "9007199254740993", "2^53"}},
+       ErrorCode::out_of_range,
+       "y.npy",
+       {"9007199254740993", "2^53"}},
       {"too few channels",
        [](const auto& f) {
          put_npy(f, "y.npy", {2}, {1, 2});
        },
-       {"y.npy", "2 channels", "expected 3"}},
+       ErrorCode::mismatch,
+       "y.npy",
+       {"2", "3"}},
       {"transposed",
        [](const auto& f) {
          put_npy(f, "y.npy", {3, 1}, {1, 2, 3});
        },
-       {"y.npy", "1 channels", "expected 3"}},
+       ErrorCode::mismatch,
+       "y.npy",
+       {"1", "3"}},
       {"NaN",
        [](const auto& f) {
          put_npy(f, "y.npy", {3}, {1, not_a_number, 2});
        },
-       {"y.npy", "channel 1", "nan", "--weights"}},
+       ErrorCode::out_of_range,
+       "y.npy",
+       {"1", "nan", "--weights"}},
       {"infinity in a later frame",
        [](const auto& f) {
          put_npy(f, "y.npy", {2, 3}, {1, 2, 3, 4, 5, -infinity});
        },
-       {"y.npy", "frame 1, channel 2", "-inf", "--weights"}},
+       ErrorCode::out_of_range,
+       "y.npy",
+       {"1", "2", "-inf", "--weights"}},
       {"beyond float32",
        [](const auto& f) {
          put_npy(f, "y.npy", {3}, {1e300, 1, 1});
        },
-       {"y.npy", "channel 0", "float32"}},
+       ErrorCode::out_of_range,
+       "y.npy",
+       {"0", "1e+300", "float32"}},
   };
   for (const Case& each : cases) {
     CAPTURE(each.name);
     const ScratchProblem problem;
     each.damage(problem.folder());
-    check_refused(problem, scratch_command, 1, each.fragments);
+    check_refused(problem, scratch_command, each.code, each.place, each.named);
   }
 }
 
-TEST_CASE("weights and truths that do not fit are refused in one sentence") {
+TEST_CASE("weights and truths that do not fit are refused by place and value") {
   const Case cases[] = {
       {"negative",
        [](const auto& f) {
          put_npy(f, "w.npy", {3}, {1, -0.5, 1});
        },
-       {"w.npy", "channel 1", "-0.5"}},
+       ErrorCode::out_of_range,
+       "w.npy",
+       {"1", "-0.5"}},
       {"NaN",
        [](const auto& f) {
          put_npy(f, "w.npy", {1, 3}, {1, 1, not_a_number});
        },
-       {"w.npy", "frame 0, channel 2", "nan"}},
+       ErrorCode::out_of_range,
+       "w.npy",
+       {"0", "2", "nan"}},
       {"all zero",
        [](const auto& f) {
          put_npy(f, "w.npy", {3}, {0, 0, 0});
        },
-       {"w.npy", "no weight above 0"}},
+       ErrorCode::out_of_range,
+       "w.npy",
+       {"0"}},
       {"channels",
        [](const auto& f) {
          put_npy(f, "w.npy", {4}, {1, 1, 1, 1});
        },
-       {"w.npy", "4 channels", "expected 3"}},
+       ErrorCode::mismatch,
+       "w.npy",
+       {"4", "3"}},
       {"frames",
        [](const auto& f) {
          put_npy(f, "w.npy", {2, 3}, {1, 1, 1, 1, 1, 1});
        },
-       {"w.npy", "2 frames", "expected 1"}},
+       ErrorCode::mismatch,
+       "w.npy",
+       {"2", "1"}},
       {"NaN in y at a channel in use",
        [](const auto& f) {
          put_npy(f, "w.npy", {3}, {0, 1, 1});
          put_npy(f, "y.npy", {3}, {not_a_number, not_a_number, 1});
        },
-       {"y.npy", "channel 1", "nan"}},
-      {"missing", [](const auto&) {}, {"w.npy", "does not exist"}},
+       ErrorCode::out_of_range,
+       "y.npy",
+       {"1", "nan"}},
+      {"missing", [](const auto&) {}, ErrorCode::not_found, "w.npy", {}},
   };
   for (const Case& each : cases) {
     CAPTURE(each.name);
     const ScratchProblem problem;
     each.damage(problem.folder());
-    check_refused(problem, std::string(scratch_command) + "--weights w.npy", 1, each.fragments);
+    check_refused(problem, std::string(scratch_command) + "--weights w.npy", each.code, each.place, each.named);
   }
   const Case truths[] = {
       {"size",
        [](const auto& f) {
          put_npy(f, "t.npy", {1, 4}, {1, 2, 3, 4});
        },
-       {"t.npy", "1x4", "2x2"}},
+       ErrorCode::mismatch,
+       "t.npy",
+       {"1x4", "2x2"}},
       {"number",
        [](const auto& f) {
          put_npy(f, "t.npy", {2, 2, 2}, {1, 2, 3, 4, 5, 6, 7, 8});
        },
-       {"t.npy", "2 pictures"}},
+       ErrorCode::mismatch,
+       "t.npy",
+       {"2", "1"}},
       {"NaN",
        [](const auto& f) {
          put_npy(f, "t.npy", {2, 2}, {1, 2, not_a_number, 4});
        },
-       {"t.npy", "nan", "(1, 0)"}},
+       ErrorCode::out_of_range,
+       "t.npy",
+       {"nan", "(1, 0)"}},
       {"one axis",
        [](const auto& f) {
          put_npy(f, "t.npy", {4}, {1, 2, 3, 4});
        },
-       {"t.npy", "(4,)", "(H, W)"}},
+       ErrorCode::mismatch,
+       "t.npy",
+       {"(4,)", "(H, W)"}},
   };
   for (const Case& each : truths) {
     CAPTURE(each.name);
     const ScratchProblem problem;
     each.damage(problem.folder());
-    check_refused(problem, std::string(scratch_command) + "--truth t.npy", 1, each.fragments);
+    check_refused(problem, std::string(scratch_command) + "--truth t.npy", each.code, each.place, each.named);
   }
 }
 

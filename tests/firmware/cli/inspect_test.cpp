@@ -6,6 +6,7 @@
 #include "tests/firmware/cli/program.hpp"
 #include "tests/firmware/cli/scratch_problem.hpp"
 
+using namespace compueye;
 using namespace compueye::test;
 
 TEST_CASE("inspect counts what is wrong with a response") {
@@ -91,5 +92,5 @@ TEST_CASE("inspect tells a board's noise, LSB, lambda and cached factors") {
   CHECK(json["seeing_channels"] == 64);
   CHECK(json_from("inspect board.toml --json", folder.path())["lambda"] == json["lambda"]);
   folder.file("broken.toml", "[board]\nnam = 'x'\n");
-  check_failed(run_compueye("inspect broken.toml", folder.path()), 1, {"broken.toml:2", "'nam'"});
+  check_failed(run_compueye("inspect broken.toml", folder.path()), hal::ErrorCode::not_found, "broken.toml:2", {"nam"});
 }

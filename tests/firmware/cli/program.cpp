@@ -127,20 +127,6 @@ nlohmann::json json_from(std::string_view arguments, const std::filesystem::path
   return json;
 }
 
-void check_failed(const Outcome& outcome, int exit_code, const std::vector<std::string>& fragments) {
-  CAPTURE(outcome.err);
-  CHECK_FALSE(outcome.timed_out);
-  CHECK(outcome.exit_code == exit_code);
-  CHECK(outcome.out.empty());
-  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
-  CHECK(outcome.err.starts_with("compueye: "));
-  CHECK(outcome.err.ends_with("\n"));
-  for (const std::string& fragment : fragments) {
-    CAPTURE(fragment);
-    CHECK(outcome.err.find(fragment) != std::string::npos);
-  }
-}
-
 std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder))

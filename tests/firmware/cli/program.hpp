@@ -46,9 +46,6 @@ class Program {
 /// Exit code 0 and nothing on stderr; what it printed as JSON.
 [[nodiscard]] nlohmann::json json_from(std::string_view arguments, const std::filesystem::path& folder);
 
-/// The exit code, one sentence on stderr with every fragment, nothing on stdout.
-void check_failed(const Outcome& outcome, int exit_code, const std::vector<std::string>& fragments);
-
 [[nodiscard]] std::vector<std::string> names_in(const std::filesystem::path& folder);
 
 }  // namespace compueye::test

@@ -129,8 +129,8 @@ TEST_CASE("solvers that end by themselves say where: omp by its elements, tsvd b
   CHECK(many["median_residual"].get<double>() < 0.5 * few["median_residual"].get<double>());
   CHECK(by_noise["rank"].get<int>() > 10);
   CHECK(by_noise["rank"].get<int>() < 64);
-  check_failed(run_compueye(std::string(small_eye) + "--solver tsvd --rank 65", folder.path()), 1,
-               {"--rank", "65", "1 to 64"});
+  check_failed(run_compueye(std::string(small_eye) + "--solver tsvd --rank 65", folder.path()),
+               hal::ErrorCode::out_of_range, "--rank", {"65", "1", "64"});
 }
 
 TEST_CASE("the operator is the one asked for, by rule the one that suits the response") {
@@ -288,14 +288,14 @@ TEST_CASE("lambda from the samples is one of the rule's multiples, and says so")
 TEST_CASE("lambda from the samples needs their noise, and a first frame without missing channels") {
   const TemporaryFolder folder;
   put_frames(folder, 2);
-  check_failed(run_compueye(std::string(small_eye) + "--lambda 1 --lambda-from-samples --out x.npy", folder.path()), 2,
-               {"--lambda-from-samples", "--sigma"});
+  check_failed(run_compueye(std::string(small_eye) + "--lambda 1 --lambda-from-samples --out x.npy", folder.path()),
+               hal::ErrorCode::usage, "", {"--lambda-from-samples", "--sigma"});
   std::vector<double> weights(128, 1.0);
   weights[5] = 0.0;
   put_npy(folder, "w.npy", {2, 64}, weights);
   check_failed(run_compueye(std::string(small_eye) + "--sigma 0.1 --lambda-from-samples --weights w.npy --out x.npy",
                             folder.path()),
-               1, {"--lambda-from-samples", "first frame"});
+               hal::ErrorCode::mismatch, "--lambda-from-samples", {"--weights", "(M,)"});
   CHECK_FALSE(std::filesystem::exists(folder / "x.npy"));
 }
 
@@ -307,7 +307,9 @@ TEST_CASE("reweighting makes a pixel-sparse picture better, and is refused elsew
     return json_from(command + "--json " + std::string(more), folder.path())["per_frame"][0]["nmse"].get<double>();
   };
   CHECK(nmse("--reweight 0.1") < 0.5 * nmse(""));
-  check_failed(run_compueye(command + "--reweight 0.1 --basis dct", folder.path()), 2, {"--reweight", "identity"});
-  check_failed(run_compueye(command + "--reweight 0.1 --solver fista", folder.path()), 2, {"--reweight", "admm"});
-  check_failed(run_compueye(command + "--reweight 0", folder.path()), 2, {"--reweight", "'0'", "above 0"});
+  check_failed(run_compueye(command + "--reweight 0.1 --basis dct", folder.path()), hal::ErrorCode::usage, "--reweight",
+               {"identity"});
+  check_failed(run_compueye(command + "--reweight 0.1 --solver fista", folder.path()), hal::ErrorCode::usage,
+               "--reweight", {"admm"});
+  check_failed(run_compueye(command + "--reweight 0", folder.path()), hal::ErrorCode::usage, "--reweight", {"0"});
 }

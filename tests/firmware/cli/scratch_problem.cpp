@@ -35,11 +35,11 @@ ScratchProblem::ScratchProblem() {
   put_npy(folder_, "y.npy", {3}, {1, 0.5, 0.25});
 }
 
-void check_refused(const ScratchProblem& problem, std::string_view arguments, int exit_code,
-                   const std::vector<std::string>& fragments) {
+void check_refused(const ScratchProblem& problem, std::string_view arguments, hal::ErrorCode code,
+                   const std::string& place, const Named& named) {
   CAPTURE(arguments);
   const auto before = names_in(problem.folder().path());
-  check_failed(run_compueye(arguments, problem.folder().path()), exit_code, fragments);
+  check_failed_json(run_compueye(std::string(arguments) + " --json", problem.folder().path()), code, place, named);
   CHECK(names_in(problem.folder().path()) == before);
 }
 

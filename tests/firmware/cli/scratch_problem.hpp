@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "recon/response.hpp"
+#include "tests/firmware/failure_check.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 
 namespace compueye::test {
@@ -42,9 +43,9 @@ class ScratchProblem {
 inline constexpr std::string_view scratch_command =
     "reconstruct --response A.npy --samples y.npy --size 2x2 --sigma 0.01 --out x.npy ";
 
-/// Runs `arguments` in the folder: it must fail as said and leave the folder as it was.
-void check_refused(const ScratchProblem& problem, std::string_view arguments, int exit_code,
-                   const std::vector<std::string>& fragments);
+/// Runs `arguments` and --json in the folder: it must fail as said and leave the folder as it was.
+void check_refused(const ScratchProblem& problem, std::string_view arguments, hal::ErrorCode code,
+                   const std::string& place, const Named& named);
 
 /// The nominal response of sim-8x8, written to `folder` as A.mtx by the program and read back.
 [[nodiscard]] recon::Response make_small_eye(const TemporaryFolder& folder);

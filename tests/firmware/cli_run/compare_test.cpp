@@ -14,6 +14,7 @@
 
 using namespace compueye;
 using namespace compueye::test;
+using compueye::hal::ErrorCode;
 using Json = nlohmann::json;
 
 namespace {
@@ -124,10 +125,9 @@ TEST_CASE("what cannot be solved is a note, and costs no other row") {
   CHECK(json["complete"] == false);
   CHECK(json["missing"].size() == 2);
   REQUIRE(json["notes"].size() == 2);
-  CHECK(contains(json["notes"][0].get<std::string>(), "identity none tikhonov"));
-  const Ended alone = compueye::test::compueye(compare_arguments(board, {"--lambda", "0", "--solvers", "tikhonov"}));
-  CHECK(alone.exit_code == 2);
-  CHECK(contains(alone.err, "tikhonov"));
+  CHECK(names(json["notes"][0].get<std::string>(), "tikhonov"));
+  check_refused(compare_arguments(board, {"--lambda", "0", "--solvers", "tikhonov"}), ErrorCode::usage, "tikhonov",
+                {"lambda", "0"});
 }
 
 TEST_CASE("a board's own rho, lambda and dead ommatidia count as in a run") {
@@ -145,10 +145,8 @@ TEST_CASE("a board's own rho, lambda and dead ommatidia count as in a run") {
   CHECK(row_of(both, "admm", "dct")["lambda"] != 0.25);
   const CopiedBoard blind;
   blind.change("dead = []", "dead = [10, 11, 12, 18, 19, 20]");
-  const Ended refused =
-      compueye::test::compueye(compare_arguments(blind, {"--solvers", "admm", "--bases", "identity"}));
-  CHECK(refused.exit_code != 0);
-  CHECK(contains(refused.err, "max_missing_share"));
+  check_refused(compare_arguments(blind, {"--solvers", "admm", "--bases", "identity"}), ErrorCode::usage, "correction",
+                {"6", "64", "max_missing_share", "3"});
 }
 
 TEST_CASE("another response, a table, a CSV and a contact sheet") {
@@ -177,23 +175,25 @@ TEST_CASE("another response, a table, a CSV and a contact sheet") {
 
 TEST_CASE("compare refuses what makes no sense before it works") {
   const CopiedBoard board, narrow;
-  const auto refused = [&](std::vector<std::string> more, const Refusal& expected) {
-    check_refused(compare_arguments(board, std::move(more)), expected);
+  const auto refused = [&](std::vector<std::string> more, ErrorCode code, const std::string& place,
+                           const Named& named) {
+    check_refused(compare_arguments(board, std::move(more)), code, place, named);
   };
-  refused({"--solvers", "amdm"}, {2, "usage", "--solvers", "amdm"});
-  refused({"--bases", "dct,wavelet"}, {2, "usage", "--bases", "wavelet"});
-  refused({"--constraint", "positive"}, {2, "usage", "--constraint", "positive"});
-  refused({"--solvers", "tsvd", "--bases", "tv"}, {2, "usage", "--solvers", ""});
-  refused({"--iterations", "0"}, {2, "usage", "--iterations", "0"});
-  refused({"--threads", "0"}, {2, "usage", "--threads", "64"});
-  refused({"--sigma", "-1"}, {2, "usage", "--sigma", "-1"});
-  refused({"--sheet", board.outside("no/such/folder.png").string()}, {1, "not found", "folder", ""});
+  refused({"--solvers", "amdm"}, ErrorCode::usage, "--solvers", {"amdm"});
+  refused({"--bases", "dct,wavelet"}, ErrorCode::usage, "--bases", {"wavelet"});
+  refused({"--constraint", "positive"}, ErrorCode::usage, "--constraint", {"positive"});
+  refused({"--solvers", "tsvd", "--bases", "tv"}, ErrorCode::usage, "--solvers", {"--bases"});
+  refused({"--iterations", "0"}, ErrorCode::usage, "--iterations", {"0"});
+  refused({"--threads", "0"}, ErrorCode::usage, "--threads", {"0", "64"});
+  refused({"--sigma", "-1"}, ErrorCode::usage, "--sigma", {"-1"});
+  const std::string sheet = board.outside("no/such/folder.png").string();
+  refused({"--sheet", sheet}, ErrorCode::not_found, sheet, {});
   narrow.change("rows = 8", "rows = 6");
   const auto matrix = board.outside("A.npy");
   const Ended other =
       compueye::test::compueye({"response", "--board", narrow.path().string(), "--out", matrix.string()});
   REQUIRE(other.exit_code == 0);
-  refused({"--response", matrix.string()}, {1, "mismatch", "A.npy", "48"});
+  refused({"--response", matrix.string()}, ErrorCode::mismatch, matrix.string(), {"48", "64"});
 }
 
 TEST_CASE("Ctrl-C keeps what compare has measured") {

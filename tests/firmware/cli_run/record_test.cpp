@@ -5,9 +5,11 @@
 #include <thread>
 
 #include "tests/firmware/cli_run/copied_board.hpp"
+#include "tests/firmware/cli_run/refused.hpp"
 
 using namespace compueye;
 using namespace compueye::test;
+using compueye::hal::ErrorCode;
 
 namespace {
 
@@ -96,8 +98,9 @@ TEST_CASE("a damaged and torn recording still runs, and the run says what is mis
   CHECK(json["source_counters"]["damaged_frames"] == 1);
   CHECK(json["source_counters"]["torn_bytes"] == 99);
   CHECK(json["source_counters"]["unrecorded_frames"] == 0);
-  CHECK(contains(ended.err, "torn tail of 99 bytes from byte " + std::to_string(first + 11 * frame)));
-  CHECK(contains(ended.err, "the first at byte " + std::to_string(first + 4 * frame)));
+  for (const std::size_t told : {std::size_t{99}, first + 11 * frame, first + 4 * frame}) {
+    CHECK(names(ended.err, std::to_string(told)));
+  }
   const auto told = replay(file);
   CHECK(told["torn_tail"]["bytes"] == 99);
   CHECK(told["damage"]["frames"] == 1);
@@ -142,34 +145,38 @@ TEST_CASE("errors of recordings name the file and what is wrong") {
   const CopiedBoard other("sim-80x80");
   struct Case {
     std::vector<std::string> arguments;
-    int exit_code;
-    std::vector<std::string> said;
+    ErrorCode code;
+    std::string place;
+    Named named;
   };
   const std::vector<Case> cases{
-      {{"record", "--board", at, "--out", rec}, 1, {rec, "never overwritten"}},
-      {{"run", "--board", at, "--record", rec}, 1, {rec, "never overwritten"}},
-      {{"record", "--board", at, "--out", "/dev/full"}, 1, {"/dev/full", "No space left"}},
-      {{"record", "--board", at, "--out", rec + "/x.rec"}, 1, {rec + "/x.rec"}},
-      {{"record", "--board", at}, 2, {"--out", "eye.rec"}},
-      {{"record", "--board", at, "--out", "x.rec", "--seconds", "-1"}, 2, {"--seconds", "-1"}},
-      {{"record", "--board", at, "--out", "x.rec", "--seconds", "1", "--frames", "3"}, 2, {"--frames", "--seconds"}},
-      {{"replay", rec + "x"}, 1, {rec + "x", "check the name"}},
-      {{"replay", at + "/board.toml"}, 1, {"board.toml", "is not a recording", "byte 0"}},
-      {{"replay", cut.string()}, 1, {cut.string(), "100 of"}},
-      {{"replay", flipped.string()}, 1, {flipped.string(), "CRC at byte"}},
-      {{"run", "--board", other.path().string(), "--replay", rec}, 1, {rec, "64 channels", "6400"}},
-      {{"run", "--board", at, "--pace", "fast"}, 2, {"--pace", "--replay"}},
-      {{"run", "--board", at, "--replay", rec, "--seed", "3"}, 2, {"--seed"}},
-      {{"run", "--board", at, "--replay", rec, "--record", "x.rec"}, 2, {"--record"}},
-      {{"run", "--board", at, "--replay", rec, "--sheet", "x.png"}, 2, {"--sheet", "--scene"}},
-      {{"run", "--board", at, "--replay", rec, "--deadline", "5"}, 2, {"--deadline", "--pace recorded"}},
+      {{"record", "--board", at, "--out", rec}, ErrorCode::io, rec, {}},
+      {{"run", "--board", at, "--record", rec}, ErrorCode::io, rec, {}},
+      {{"record", "--board", at, "--out", "/dev/full"}, ErrorCode::no_space, "/dev/full", {}},
+      {{"record", "--board", at, "--out", rec + "/x.rec"}, ErrorCode::not_found, rec + "/x.rec", {}},
+      {{"record", "--board", at}, ErrorCode::usage, "--out", {"eye.rec"}},
+      {{"record", "--board", at, "--out", "x.rec", "--seconds", "-1"}, ErrorCode::usage, "--seconds", {"-1"}},
+      {{"record", "--board", at, "--out", "x.rec", "--seconds", "1", "--frames", "3"},
+       ErrorCode::usage,
+       "",
+       {"--frames", "--seconds"}},
+      {{"replay", rec + "x"}, ErrorCode::not_found, rec + "x", {}},
+      {{"replay", at + "/board.toml"}, ErrorCode::bad_format, at + "/board.toml", {"0"}},
+      {{"replay", cut.string()}, ErrorCode::bad_format, cut.string(), {"100"}},
+      {{"replay", flipped.string()}, ErrorCode::bad_format, flipped.string(), {"CRC"}},
+      {{"run", "--board", other.path().string(), "--replay", rec}, ErrorCode::mismatch, rec, {"64", "6400"}},
+      {{"run", "--board", at, "--pace", "fast"}, ErrorCode::usage, "--pace", {"--replay"}},
+      {{"run", "--board", at, "--replay", rec, "--seed", "3"}, ErrorCode::usage, "", {"--seed", "--replay"}},
+      {{"run", "--board", at, "--replay", rec, "--record", "x.rec"}, ErrorCode::usage, "--record", {"--replay"}},
+      {{"run", "--board", at, "--replay", rec, "--sheet", "x.png"}, ErrorCode::usage, "--sheet", {"--scene"}},
+      {{"run", "--board", at, "--replay", rec, "--deadline", "5"},
+       ErrorCode::usage,
+       "--deadline",
+       {"--pace", "recorded"}},
   };
   for (const Case& each : cases) {
-    const Ended ended = test::compueye(each.arguments);
-    CAPTURE(ended.err);
-    CHECK(ended.exit_code == each.exit_code);
-    CHECK(lines(ended.err) == 1);
-    for (const std::string& said : each.said) CHECK(contains(ended.err, said));
+    CAPTURE(each.place);
+    check_refused(each.arguments, each.code, each.place, each.named);
   }
   CHECK(bytes_of(file) == bytes);
 }

@@ -6,11 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "tests/hal/error_check.hpp"
+
 using namespace compueye::firmware;
 using compueye::hal::DropReason;
 using compueye::hal::ErrorCode;
 using compueye::hal::SampleBlock;
 using compueye::hal::SourceDescription;
+using compueye::test::check_error;
+using compueye::test::Named;
 
 namespace {
 
@@ -60,11 +64,6 @@ Correction make(const CorrectionSettings& settings, const SourceDescription& sou
   auto made = Correction::create(settings, source);
   REQUIRE_MESSAGE(made.has_value(), made.error().text());
   return *made;
-}
-
-std::string refusal(const CorrectionSettings& settings, const SourceDescription& source) {
-  const auto made = Correction::create(settings, source);
-  return made ? "accepted" : std::string(name(made.error().code)) + ": " + made.error().text();
 }
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -180,43 +179,44 @@ TEST_CASE("a block of another shape, depth or configuration is corrupt") {
 
 TEST_CASE("calibration values that cannot be right are refused by name") {
   const SourceDescription source = eye(3, 8);
-  const auto with = [&](auto change) {
+  const auto refused = [&](auto change, ErrorCode code, const Named& named) {
     CorrectionSettings settings;
     change(settings);
-    return refusal(settings, source);
+    check_error(Correction::create(settings, source), code, "correction", named);
   };
-  CHECK(with([](auto& s) {
-          s.dark = {0, nan, 0};
-        }) == "out of range: correction: the dark level of channel 1 is nan, expected a finite number");
-  CHECK(with([](auto& s) { s.dark = {0, 0, infinity}; }).find("channel 2 is inf") != std::string::npos);
-  CHECK(with([](auto& s) { s.gain = {1, 1, 0}; }).find("the gain of channel 2 is 0.0") != std::string::npos);
-  CHECK(with([](auto& s) { s.gain = {-1, 1, 1}; }).find("out of range") == 0);
-  CHECK(with([](auto& s) { s.gain = {1, 1}; }).find("mismatch: correction: the gain list has 2 entries") == 0);
-  CHECK(with([](auto& s) { s.dark = {1}; }).find("mismatch") == 0);
-  CHECK(with([](auto& s) { s.sees = {1, 1, 1, 1}; }).find("mismatch") == 0);
-  CHECK(with([](auto& s) { s.lsb = 0.0; }).find("lsb is 0.0") != std::string::npos);
-  CHECK(with([](auto& s) { s.lsb = nan; }).find("out of range") == 0);
-  CHECK(with([](auto& s) { s.saturation_share = 0.0; }).find("saturation_share") != std::string::npos);
-  CHECK(with([](auto& s) { s.max_missing_share = 1.5; }).find("max_missing_share is 1.5") != std::string::npos);
-  CHECK(with([](auto& s) { s.max_missing_share = nan; }).find("out of range") == 0);
-  CHECK(with([](auto& s) { s.dead_channels = {3}; }).find("dead channel 3 does not exist") != std::string::npos);
-  CHECK(with([](auto& s) { s.dead_channels = {-1}; }).find("out of range") == 0);
-  CHECK(with([](auto& s) { s.sees = {0, 0, 0}; }).find("usage") == 0);
-  CHECK(with([](auto& s) { s.dead_channels = {0}; }).find("usage: correction: 1 of 3 seeing channels") == 0);
-  CHECK(with([](auto&) {}) == "accepted");
+  constexpr auto range = ErrorCode::out_of_range, mismatch = ErrorCode::mismatch, usage = ErrorCode::usage;
+  refused([](auto& s) { s.dark = std::vector<float>{0, nan, 0}; }, range, {"dark", "1", "nan"});
+  refused([](auto& s) { s.dark = std::vector<float>{0, 0, infinity}; }, range, {"dark", "2", "inf"});
+  refused([](auto& s) { s.gain = std::vector<float>{1, 1, 0}; }, range, {"gain", "2", "0"});
+  refused([](auto& s) { s.gain = std::vector<float>{-1, 1, 1}; }, range, {"gain", "0", "-1"});
+  refused([](auto& s) { s.gain = std::vector<float>{1, 1}; }, mismatch, {"gain", "2", "3"});
+  refused([](auto& s) { s.dark = std::vector<float>{1}; }, mismatch, {"dark", "1", "3"});
+  refused([](auto& s) { s.sees.assign(4, 1); }, mismatch, {"4", "3"});
+  refused([](auto& s) { s.lsb = 0.0; }, range, {"lsb", "0"});
+  refused([](auto& s) { s.lsb = nan; }, range, {"lsb", "nan"});
+  refused([](auto& s) { s.saturation_share = 0.0; }, range, {"saturation_share", "0"});
+  refused([](auto& s) { s.max_missing_share = 1.5; }, range, {"max_missing_share", "1.5"});
+  refused([](auto& s) { s.max_missing_share = nan; }, range, {"max_missing_share", "nan"});
+  refused([](auto& s) { s.dead_channels.assign(1, 3); }, range, {"3"});
+  refused([](auto& s) { s.dead_channels.assign(1, -1); }, range, {"-1"});
+  refused([](auto& s) { s.sees.assign(3, 0); }, usage, {});
+  refused([](auto& s) { s.dead_channels.assign(1, 0); }, usage, {"1", "3", "max_missing_share"});
+  CHECK(Correction::create({}, source).has_value());
 }
 
 TEST_CASE("a source whose channel map is not one ommatidium for each channel is refused") {
-  const auto with = [](auto change) {
+  const auto refused = [](auto change, ErrorCode code, const Named& named) {
     SourceDescription source = eye(3, 8);
     change(source);
-    return refusal({}, source);
+    check_error(Correction::create({}, source), code, "eye-1", named);
   };
-  CHECK(with([](auto& s) { s.ommatidium_of_channel = {0, 1}; }).find("mismatch: eye-1") == 0);
-  CHECK(with([](auto& s) { s.ommatidium_of_channel = {0, 1, 3}; }).find("mapped to ommatidium 3") != std::string::npos);
-  CHECK(with([](auto& s) { s.ommatidium_of_channel = {0, -1, 2}; }).find("out of range") == 0);
-  CHECK(with([](auto& s) { s.ommatidium_of_channel = {0, 1, 1}; }).find("another channel") != std::string::npos);
-  CHECK(with([](auto& s) { s.channels = 0; }).find("out of range") == 0);
-  CHECK(with([](auto& s) { s.bits = 0; }).find("0 bits") != std::string::npos);
-  CHECK(with([](auto& s) { s.bits = 25; }).find("25 bits") != std::string::npos);
+  using Map = std::vector<std::int32_t>;
+  constexpr auto range = ErrorCode::out_of_range, mismatch = ErrorCode::mismatch;
+  refused([](auto& s) { s.ommatidium_of_channel = Map{0, 1}; }, mismatch, {"2", "3"});
+  refused([](auto& s) { s.ommatidium_of_channel = Map{0, 1, 3}; }, range, {"2", "3"});
+  refused([](auto& s) { s.ommatidium_of_channel = Map{0, -1, 2}; }, range, {"1", "-1"});
+  refused([](auto& s) { s.ommatidium_of_channel = Map{0, 1, 1}; }, mismatch, {"2", "1"});
+  refused([](auto& s) { s.channels = 0; }, range, {"0"});
+  refused([](auto& s) { s.bits = 0; }, range, {"0"});
+  refused([](auto& s) { s.bits = 25; }, range, {"25"});
 }

@@ -3,22 +3,21 @@
 #include <string>
 
 #include "tests/firmware/pipeline/rig.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye::firmware;
 using namespace compueye::firmware::tests;
+using compueye::hal::ErrorCode;
+using compueye::test::check_error;
+using compueye::test::Named;
 
 namespace {
 
-std::string refusal(Rig& rig) {
-  const auto made = Pipeline::create(rig.settings, rig.source, rig.solver, rig.sink, rig.clock);
-  return made ? "accepted" : std::string(name(made.error().code)) + ": " + made.error().text();
-}
-
 template <class Change>
-std::string with(Change change) {
+void refused(Change change, ErrorCode code, const std::string& place, const Named& named) {
   Rig rig;
   change(rig);
-  return refusal(rig);
+  check_error(Pipeline::create(rig.settings, rig.source, rig.solver, rig.sink, rig.clock), code, place, named);
 }
 
 class NoPicture final : public FrameSolver {
@@ -33,29 +32,26 @@ class NoPicture final : public FrameSolver {
 }  // namespace
 
 TEST_CASE("settings out of range are refused by name, value and range") {
-  CHECK(with([](Rig&) {}) == "accepted");
-  CHECK(with([](Rig& r) { r.settings.queue_capacity = 0; }) ==
-        "out of range: pipeline: queue_capacity is 0, expected at least 1 and at most 1024");
-  CHECK(with([](Rig& r) { r.settings.queue_capacity = 1025; }).find("queue_capacity is 1025") != std::string::npos);
-  CHECK(with([](Rig& r) { r.settings.deadline_ns = -1; }) ==
-        "out of range: pipeline: deadline_ns is -1, expected at least 0");
-  CHECK(with([](Rig& r) { r.settings.read_timeout_ns = 0; }).find("read_timeout_ns") != std::string::npos);
-  CHECK(with([](Rig& r) { r.settings.silence_limit_ns = -5; }).find("silence_limit_ns") != std::string::npos);
-  CHECK(with([](Rig& r) { r.settings.correction.lsb = -1.0; }).find("lsb") != std::string::npos);
+  Rig rig;
+  CHECK(Pipeline::create(rig.settings, rig.source, rig.solver, rig.sink, rig.clock).has_value());
+  constexpr auto range = ErrorCode::out_of_range;
+  refused([](Rig& r) { r.settings.queue_capacity = 0; }, range, "pipeline", {"queue_capacity", "0", "1", "1024"});
+  refused([](Rig& r) { r.settings.queue_capacity = 1025; }, range, "pipeline", {"queue_capacity", "1025", "1024"});
+  refused([](Rig& r) { r.settings.deadline_ns = -1; }, range, "pipeline", {"deadline_ns", "-1", "0"});
+  refused([](Rig& r) { r.settings.read_timeout_ns = 0; }, range, "pipeline", {"read_timeout_ns", "0", "1"});
+  refused([](Rig& r) { r.settings.silence_limit_ns = -5; }, range, "pipeline", {"silence_limit_ns", "-5"});
+  refused([](Rig& r) { r.settings.correction.lsb = -1.0; }, range, "correction", {"lsb", "-1"});
 }
 
 TEST_CASE("a source and a solver that do not fit are refused before anything is opened") {
   Rig rig;
   CopyingSolver smaller(rig.clock, Rig::channels - 1);
   const auto made = Pipeline::create(rig.settings, rig.source, smaller, rig.sink, rig.clock);
-  REQUIRE_FALSE(made.has_value());
-  CHECK(made.error().text() ==
-        "scripted-1: the source has 20 channels and the response has 19 rows, expected the same number");
+  check_error(made, ErrorCode::mismatch, "scripted-1", {"20", "19"});
 
   NoPicture no_picture;
   const auto empty = Pipeline::create(rig.settings, rig.source, no_picture, rig.sink, rig.clock);
-  REQUIRE_FALSE(empty.has_value());
-  CHECK(empty.error().text().find("0 x 16") != std::string::npos);
+  check_error(empty, ErrorCode::out_of_range, "solver", {"0", "16"});
   CHECK(rig.sink.opened == 0);
   CHECK_FALSE(rig.source.started());
 }

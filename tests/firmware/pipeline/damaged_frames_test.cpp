@@ -1,11 +1,13 @@
 #include <doctest/doctest.h>
 
 #include "tests/firmware/pipeline/rig.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye::firmware;
 using namespace compueye::firmware::tests;
 using compueye::hal::DropReason;
 using compueye::hal::ErrorCode;
+using compueye::test::check_error;
 
 TEST_CASE("frames taken with another configuration are corrupt, and good again when it returns") {
   Rig rig;
@@ -34,8 +36,7 @@ TEST_CASE("a device that leaves its configuration for good ends the run and says
   const RunSummary summary = rig.run();
   CHECK(summary.ending == Ending::source_failed);
   REQUIRE(summary.error.has_value());
-  CHECK(summary.error->code == ErrorCode::mismatch);
-  CHECK(summary.error->sentence.find("configuration 9, expected 1") != std::string::npos);
+  check_error(*summary.error, ErrorCode::mismatch, "configuration", {"9", "1"});
   CHECK(summary.frames.delivered == 16);
   CHECK(summary.health.config_mismatches == 9);
 }
