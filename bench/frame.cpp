@@ -44,8 +44,8 @@ struct Operator {
   recon::OwnedTables<float> tables;
   std::optional<recon::AlignedWorkspace> memory;
 
-  explicit Operator(const recon::Response& seeing, const bench::Eye& eye) {
-    static_cast<void>(recon::fill_operator(seeing, eye.plane.rows, eye.plane.cols, std::nullopt, tables));
+  explicit Operator(const recon::Response& seeing) {
+    static_cast<void>(recon::fill_operator(seeing, std::nullopt, tables));
     memory.emplace(view().scratch_size() * sizeof(float) + 64);
   }
   [[nodiscard]] const core::LinearOperator<float>& view() const { return tables.problem.a; }
@@ -93,11 +93,9 @@ Part measure_adjoint(Operator& a) {
   return {"A adjoint", bench::median_ms(work), static_cast<double>(a.tables.bytes()) + vectors, a.flops()};
 }
 
-Part measure_inverse(const recon::Response& seeing, const bench::Eye& eye, const recon::Factor& factor) {
+Part measure_inverse(const recon::Response& seeing, const recon::Factor& factor) {
   recon::OwnedTables<float> tables;
-  recon::fill_inverse(
-      recon::ParityClasses(seeing.rows(), recon::find_mirror_symmetry(seeing, eye.plane.rows, eye.plane.cols)),
-      factor.values, tables);
+  recon::fill_inverse(recon::ParityClasses(seeing.rows(), recon::find_mirror_symmetry(seeing)), factor.values, tables);
   const core::ClassInverse<float>& h = tables.problem.inverse;
   const auto x = some_numbers(h.order);
   std::vector<float> y(h.order), scratch(h.scratch_size());
@@ -140,14 +138,14 @@ Part measure_proximal(std::size_t n) {
 }
 
 /// One iteration by the difference of two frames, so that what a frame costs once drops out.
-hal::Result<Part> measure_whole(const recon::Response& response, int rows, int cols, const recon::Objective& objective,
-                                recon::Plan plan, const recon::Factor& factor) {
+hal::Result<Part> measure_whole(const recon::Response& response, const recon::Objective& objective, recon::Plan plan,
+                                const recon::Factor& factor) {
   double ms[2] = {};
   const auto y = some_numbers(static_cast<std::size_t>(response.rows()));
   std::vector<float> x(static_cast<std::size_t>(response.cols()));
   for (const int longer : {0, 1}) {
     plan.iterations = longer == 1 ? many : 1;
-    const auto solver = recon::Reconstructor::create(response, rows, cols, objective, plan, factor);
+    const auto solver = recon::Reconstructor::create(response, objective, plan, factor);
     if (!solver) return tl::unexpected(solver.error());
     const recon::AlignedWorkspace workspace(solver->required_bytes());
     ms[longer] = bench::median_ms([&] { static_cast<void>(solver->solve(y, {}, workspace.span(), x)); });
@@ -164,13 +162,13 @@ hal::Result<std::vector<Part>> measure(const bench::Eye& eye) {
   objective.lambda = 0.1;
   recon::Plan plan;
   plan.max_reweighted = 0;
-  const auto solver = recon::Reconstructor::create(*response, eye.plane.rows, eye.plane.cols, objective, plan);
+  const auto solver = recon::Reconstructor::create(*response, objective, plan);
   if (!solver) return tl::unexpected(solver.error());
   const recon::Response seeing = response->select_rows(response->seeing_rows());
-  Operator a(seeing, eye);
-  std::vector<Part> parts{measure_forward(a), measure_adjoint(a), measure_inverse(seeing, eye, solver->factor()),
+  Operator a(seeing);
+  std::vector<Part> parts{measure_forward(a), measure_adjoint(a), measure_inverse(seeing, solver->factor()),
                           measure_dct(eye.plane.rows, eye.plane.cols), measure_proximal(a.view().cols)};
-  auto whole = measure_whole(*response, eye.plane.rows, eye.plane.cols, objective, solver->plan(), solver->factor());
+  auto whole = measure_whole(*response, objective, solver->plan(), solver->factor());
   if (!whole) return tl::unexpected(whole.error());
   for (const Part& part : parts) {
     whole->bytes += part.bytes;

@@ -91,20 +91,17 @@ Timed time_ours(const std::string& name, const recon::OwnedTables<float>& tables
   return timed;
 }
 
-hal::Result<Timed> time_kind(const std::string& name, const recon::Response& a, const bench::Eye& eye,
-                             recon::OperatorKind kind, Vectors& v) {
+hal::Result<Timed> time_kind(const std::string& name, const recon::Response& a, recon::OperatorKind kind, Vectors& v) {
   recon::OwnedTables<float> tables;
   const recon::Response applied = recon::quantised(a, kind);
-  return recon::fill_operator(applied, eye.plane.rows, eye.plane.cols, kind, tables).map([&] {
-    return time_ours(name, tables, v);
-  });
+  return recon::fill_operator(applied, kind, tables).map([&] { return time_ours(name, tables, v); });
 }
 
 /// Running sums with fewer rows at once than the response would let them have.
-Timed time_running_sums(const std::string& name, const recon::Response& a, const bench::Eye& eye,
-                        const recon::MirrorSymmetry& images, const std::vector<std::int32_t>& transposed, Vectors& v) {
+Timed time_running_sums(const std::string& name, const recon::Response& a, const recon::MirrorSymmetry& images,
+                        const std::vector<std::int32_t>& transposed, Vectors& v) {
   recon::OwnedTables<float> tables;
-  tables.sums = *recon::running_sum_tables<float>(a, eye.plane.rows, eye.plane.cols, images, transposed);
+  tables.sums = *recon::running_sum_tables<float>(a, images, transposed);
   core::LinearOperator<float>& op = tables.problem.a;
   op.kind = recon::OperatorKind::running_sums;
   op.rows = static_cast<std::size_t>(a.rows());
@@ -113,7 +110,7 @@ Timed time_running_sums(const std::string& name, const recon::Response& a, const
   return time_ours(name, tables, v);
 }
 
-hal::Result<std::vector<Timed>> measure_plain(const recon::Response& a, const bench::Eye& eye, Vectors& v) {
+hal::Result<std::vector<Timed>> measure_plain(const recon::Response& a, Vectors& v) {
   std::vector<Timed> all;
   all.push_back(time_eigen("Eigen CSR", *bench::eigen_plain(a, bench::EigenStorage::csr), a, v));
   all.push_back(time_eigen("Eigen CSR, fast-math", *bench::eigen_fast_math(a, bench::EigenStorage::csr), a, v));
@@ -127,7 +124,7 @@ hal::Result<std::vector<Timed>> measure_plain(const recon::Response& a, const be
   kinds.emplace_back("dense runs, bf16", recon::OperatorKind::dense_runs_bf16);
   kinds.emplace_back("dense runs, int8", recon::OperatorKind::dense_runs_int8);
   for (const auto& [name, kind] : kinds) {
-    auto timed = time_kind(name, a, eye, kind, v);
+    auto timed = time_kind(name, a, kind, v);
     if (!timed) return tl::unexpected(std::move(timed.error()));
     all.push_back(std::move(*timed));
   }
@@ -139,14 +136,14 @@ hal::Result<std::vector<Timed>> measure_nominal(const bench::Eye& eye) {
   if (!response) return tl::unexpected(response.error());
   const recon::Response a = response->select_rows(response->seeing_rows());
   Vectors v(a);
-  auto all = measure_plain(a, eye, v);
+  auto all = measure_plain(a, v);
   if (!all) return all;
-  const recon::MirrorSymmetry images = recon::find_mirror_symmetry(a, eye.plane.rows, eye.plane.cols);
+  const recon::MirrorSymmetry images = recon::find_mirror_symmetry(a);
   const recon::MirrorSymmetry none{{images.permutations.front()}, {{1}}};
-  const auto transposed = recon::find_diagonal_symmetry(a, eye.plane.rows, eye.plane.cols);
-  all->push_back(time_running_sums("running sums, no symmetry", a, eye, none, {}, v));
-  all->push_back(time_running_sums("running sums, four rows at once", a, eye, images, {}, v));
-  all->push_back(time_running_sums("running sums, eight rows at once", a, eye, images, transposed, v));
+  const auto transposed = recon::find_diagonal_symmetry(a);
+  all->push_back(time_running_sums("running sums, no symmetry", a, none, {}, v));
+  all->push_back(time_running_sums("running sums, four rows at once", a, images, {}, v));
+  all->push_back(time_running_sums("running sums, eight rows at once", a, images, transposed, v));
   return all;
 }
 
@@ -156,7 +153,7 @@ hal::Result<std::vector<Timed>> measure_measured(const bench::Eye& eye) {
   if (!response) return tl::unexpected(response.error());
   const recon::Response a = response->select_rows(response->seeing_rows());
   Vectors v(a);
-  return measure_plain(a, eye, v);
+  return measure_plain(a, v);
 }
 
 double best(const std::vector<Timed>& all, double Timed::*figure, bool fast_math) {

@@ -68,7 +68,7 @@ hal::Result<void> measure(const Way& way, std::size_t w, const recon::Response& 
   plan.solver = way.solver;
   plan.iterations = way.iterations;
   plan.precision = recon::Precision::f64;
-  const auto solver = recon::Reconstructor::create(a, 16, 16, objective, plan);
+  const auto solver = recon::Reconstructor::create(a, objective, plan);
   if (!solver) return tl::unexpected(solver.error());
   const recon::AlignedWorkspace workspace(solver->required_bytes());
   std::vector<double> iterations;

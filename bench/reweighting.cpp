@@ -67,8 +67,7 @@ hal::Result<std::vector<float>> refactored(const recon::Response& response, cons
     rows.push_back(static_cast<std::int32_t>(m));
     samples.push_back(y[m]);
   }
-  auto reference =
-      recon::Reconstructor::create(response.select_rows(rows), side, side, solver.objective(), solver.plan());
+  auto reference = recon::Reconstructor::create(response.select_rows(rows), solver.objective(), solver.plan());
   if (!reference) return tl::unexpected(reference.error());
   const recon::AlignedWorkspace workspace(reference->required_bytes());
   std::vector<float> x(static_cast<std::size_t>(reference->pixels()));
@@ -126,13 +125,12 @@ hal::Result<std::vector<Figures>> measure_all() {
   recon::Objective objective;
   objective.basis = recon::BasisKind::dct;
   objective.constraint = recon::ConstraintKind::box;
-  const auto lambda =
-      recon::lambda_by_rule(*response, side, side, recon::SolverKind::admm, objective.basis, bench::read_noise);
+  const auto lambda = recon::lambda_by_rule(*response, recon::SolverKind::admm, objective.basis, bench::read_noise);
   if (!lambda) return tl::unexpected(lambda.error());
   objective.lambda = *lambda;
   recon::Plan plan;
   plan.iterations = iterations;
-  const auto solver = recon::Reconstructor::create(*response, side, side, objective, plan);
+  const auto solver = recon::Reconstructor::create(*response, objective, plan);
   if (!solver) return tl::unexpected(solver.error());
   const auto samples = noisy_samples(*response, *scene);
   std::vector<Figures> all;

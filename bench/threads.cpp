@@ -65,9 +65,9 @@ Shared time_both(std::string name, recon::OwnedTables<float>& tables, recon::Wor
 }
 
 hal::Result<void> time_operator(const std::string& name, const recon::Response& a, recon::OperatorKind kind,
-                                const bench::Eye& eye, recon::WorkerThreads& two, std::vector<Shared>& all) {
+                                recon::WorkerThreads& two, std::vector<Shared>& all) {
   recon::OwnedTables<float> tables;
-  auto filled = recon::fill_operator(recon::quantised(a, kind), eye.plane.rows, eye.plane.cols, kind, tables);
+  auto filled = recon::fill_operator(recon::quantised(a, kind), kind, tables);
   if (!filled) return filled;
   const core::LinearOperator<float>& op = tables.problem.a;
   tables.problem.employ(two.crew());  // more scratch than one
@@ -95,14 +95,14 @@ Shared time_dct(const bench::Eye& eye, recon::WorkerThreads& two) {
 }
 
 /// One iteration by the difference of two frames, so that what a frame costs once drops out.
-hal::Result<double> iteration_us(const recon::Response& a, const bench::Eye& eye, const recon::Objective& objective,
-                                 recon::Plan plan, std::optional<recon::Factor>& factor) {
+hal::Result<double> iteration_us(const recon::Response& a, const recon::Objective& objective, recon::Plan plan,
+                                 std::optional<recon::Factor>& factor) {
   double ms[2] = {};
   const auto y = some_numbers(static_cast<std::size_t>(a.rows()));
   std::vector<float> x(static_cast<std::size_t>(a.cols()));
   for (const int longer : {0, 1}) {
     plan.iterations = longer == 1 ? many : 1;
-    const auto solver = recon::Reconstructor::create(a, eye.plane.rows, eye.plane.cols, objective, plan, factor);
+    const auto solver = recon::Reconstructor::create(a, objective, plan, factor);
     if (!solver) return tl::unexpected(solver.error());
     factor = solver->factor();
     const recon::AlignedWorkspace workspace(solver->required_bytes());
@@ -111,8 +111,7 @@ hal::Result<double> iteration_us(const recon::Response& a, const bench::Eye& eye
   return 1e3 * (ms[1] - ms[0]) / (many - 1);
 }
 
-hal::Result<Shared> time_iteration(const recon::Response& a, const bench::Eye& eye, recon::SolverKind solver,
-                                   recon::BasisKind basis) {
+hal::Result<Shared> time_iteration(const recon::Response& a, recon::SolverKind solver, recon::BasisKind basis) {
   recon::Objective objective;
   objective.basis = basis;
   objective.constraint = recon::ConstraintKind::nonnegative;
@@ -124,7 +123,7 @@ hal::Result<Shared> time_iteration(const recon::Response& a, const bench::Eye& e
   Shared shared{fmt::format("an iteration of {}, {}", recon::name(solver), recon::name(basis))};
   for (const int threads : {1, 2}) {
     plan.threads = threads;
-    const auto us = iteration_us(a, eye, objective, plan, factor);
+    const auto us = iteration_us(a, objective, plan, factor);
     if (!us) return tl::unexpected(us.error());
     (threads == 1 ? shared.alone_us : shared.by_two_us) = *us;
   }
@@ -142,16 +141,15 @@ hal::Result<Measured> measure() {
   const recon::Response a = nominal->select_rows(nominal->seeing_rows());
   const recon::Response m = measured->select_rows(measured->seeing_rows());
   Measured all{bench::read_bandwidth(), bench::core_round_trip_ns(), 0.0, {}};
-  const auto timed =
-      time_operator("running sums", a, recon::OperatorKind::running_sums, eye, **two, all.work).and_then([&] {
-        return time_operator("int8 runs, measured rows", m, recon::OperatorKind::dense_runs_int8, eye, **two, all.work);
-      });
+  const auto timed = time_operator("running sums", a, recon::OperatorKind::running_sums, **two, all.work).and_then([&] {
+    return time_operator("int8 runs, measured rows", m, recon::OperatorKind::dense_runs_int8, **two, all.work);
+  });
   if (!timed) return tl::unexpected(timed.error());
   all.work.push_back(time_dct(eye, **two));
   for (const auto& [solver, basis] : {std::pair{recon::SolverKind::admm, recon::BasisKind::dct},
                                       {recon::SolverKind::pdhg, recon::BasisKind::dct},
                                       {recon::SolverKind::pdhg, recon::BasisKind::tv}}) {
-    auto shared = time_iteration(*nominal, eye, solver, basis);
+    auto shared = time_iteration(*nominal, solver, basis);
     if (!shared) return tl::unexpected(std::move(shared.error()));
     all.work.push_back(std::move(*shared));
   }

@@ -114,16 +114,14 @@ hal::Result<std::vector<Line>> measure() {
       recon::Objective objective;
       objective.basis = basis;
       objective.constraint = recon::ConstraintKind::box;
-      objective.lambda =
-          recon::lambda_by_rule(*response, eye.plane.rows, eye.plane.cols, recon::SolverKind::pdhg, basis, sigma)
-              .value();
+      objective.lambda = recon::lambda_by_rule(*response, recon::SolverKind::pdhg, basis, sigma).value();
       recon::Plan plan;
       plan.solver = recon::SolverKind::pdhg;
-      auto cold = recon::Reconstructor::create(*response, eye.plane.rows, eye.plane.cols, objective, plan, factor);
+      auto cold = recon::Reconstructor::create(*response, objective, plan, factor);
       if (!cold) return tl::unexpected(cold.error());
       factor = cold->factor();
       plan.warm_start = true;
-      auto warm = recon::Reconstructor::create(*response, eye.plane.rows, eye.plane.cols, objective, plan, factor);
+      auto warm = recon::Reconstructor::create(*response, objective, plan, factor);
       if (!warm) return tl::unexpected(warm.error());
       for (const char* motion : {"still", "block", "pan", "cuts"}) {
         const auto truth = sequence(motion, scene, eye);

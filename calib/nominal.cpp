@@ -94,8 +94,9 @@ hal::Result<recon::Response> nominal_response(const hal::EyeGeometry& eye, const
   rows.start.push_back(0);
   TRY(for_each_ommatidium(eye, progress, "nominal response",
                           [&](int i, int k) { append_row(rows, grid, section_of(eye, plane, i, k)); }));
-  return recon::Response::from_csr(eye.ommatidia(), plane.pixels(), std::move(rows.start), std::move(rows.columns),
-                                   std::move(rows.values));
+  auto response = TRY(recon::Response::from_csr(eye.ommatidia(), plane.pixels(), std::move(rows.start),
+                                                std::move(rows.columns), std::move(rows.values)));
+  return std::move(response).with_image(plane.rows, plane.cols);
 }
 
 }  // namespace compueye::calib

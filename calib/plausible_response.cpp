@@ -99,8 +99,9 @@ class Builder {
   }
 
   [[nodiscard]] hal::Result<recon::Response> response() && {
-    return recon::Response::from_csr(eye_.ommatidia(), plane_.pixels(), std::move(start_), std::move(columns_),
-                                     std::move(values_));
+    auto response = TRY(recon::Response::from_csr(eye_.ommatidia(), plane_.pixels(), std::move(start_),
+                                                  std::move(columns_), std::move(values_)));
+    return std::move(response).with_image(plane_.rows, plane_.cols);
   }
 
  private:

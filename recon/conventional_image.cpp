@@ -71,20 +71,18 @@ class NearestCentroid {
 
 }  // namespace
 
-hal::Result<ConventionalImage> ConventionalImage::create(const Response& response, int image_rows, int image_cols) {
-  if (image_rows < 1 || image_cols < 1 ||
-      static_cast<std::int64_t>(image_rows) * image_cols != static_cast<std::int64_t>(response.cols())) {
+hal::Result<ConventionalImage> ConventionalImage::create(const Response& response) {
+  if (response.image_rows() == 0) {
     return hal::fail(hal::ErrorCode::mismatch, "conventional eye",
                      "has a response of " + std::to_string(response.cols()) +
-                         " columns, expected one for a picture of " + std::to_string(image_rows) + " x " +
-                         std::to_string(image_cols) + " pixels");
+                         " columns, expected one that knows the rows and columns of its picture");
   }
   ConventionalImage image;
   image.channels_ = response.rows();
-  image.image_rows_ = image_rows;
-  image.image_cols_ = image_cols;
+  image.image_rows_ = response.image_rows();
+  image.image_cols_ = response.image_cols();
   const std::vector<double> sums = response.row_sums();
-  std::vector<Centroid> seeing = centroids(response, sums, image_cols);
+  std::vector<Centroid> seeing = centroids(response, sums, response.image_cols());
   if (seeing.empty()) {
     return hal::fail(hal::ErrorCode::out_of_range, "conventional eye",
                      "has no ommatidium that sees the object, expected a response with a positive row");
@@ -96,8 +94,8 @@ hal::Result<ConventionalImage> ConventionalImage::create(const Response& respons
   }
   const NearestCentroid nearest(std::move(seeing));
   image.source_.reserve(static_cast<std::size_t>(response.cols()));
-  for (int r = 0; r < image_rows; ++r) {
-    for (int c = 0; c < image_cols; ++c) image.source_.push_back(nearest.find(r, c));
+  for (int r = 0; r < response.image_rows(); ++r) {
+    for (int c = 0; c < response.image_cols(); ++c) image.source_.push_back(nearest.find(r, c));
   }
   return image;
 }

@@ -15,9 +15,9 @@ namespace compueye::recon {
 /// |a_mj|) is nearest to the pixel's centre, clipped to 0..1; of equally near ones, the first.
 class ConventionalImage {
  public:
-  /// `response` is the narrow eye's, M x N with N = image_rows * image_cols. An ommatidium with a row sum of 0 or less
+  /// `response` is the narrow eye's, which knows its picture. An ommatidium with a row sum of 0 or less
   /// is taken as blind. Errors: mismatch (N), out_of_range (no ommatidium sees anything).
-  [[nodiscard]] static hal::Result<ConventionalImage> create(const Response& response, int image_rows, int image_cols);
+  [[nodiscard]] static hal::Result<ConventionalImage> create(const Response& response);
 
   [[nodiscard]] int channels() const noexcept { return channels_; }
   [[nodiscard]] int image_rows() const noexcept { return image_rows_; }

@@ -32,11 +32,9 @@ float sign_of(std::uint64_t channel) noexcept {
 
 class RiskSearch {
  public:
-  RiskSearch(const Response& response, int image_rows, int image_cols, const Plan& plan, std::span<const float> y,
-             double sigma, std::optional<Factor> factor, const Progress& progress)
+  RiskSearch(const Response& response, const Plan& plan, std::span<const float> y, double sigma,
+             std::optional<Factor> factor, const Progress& progress)
       : response_(response),
-        image_rows_(image_rows),
-        image_cols_(image_cols),
         plan_(plan),
         y_(y),
         sigma_(sigma),
@@ -68,7 +66,7 @@ class RiskSearch {
     if (progress_ && !progress_("lambda by risk", tried, factors.size())) {
       return fail(ErrorCode::interrupted, "lambda", "was given up before it was chosen");
     }
-    auto solver = Reconstructor::create(response_, image_rows_, image_cols_, objective, plan_, factor_, progress_);
+    auto solver = Reconstructor::create(response_, objective, plan_, factor_, progress_);
     if (!solver) return tl::unexpected(std::move(solver.error()));
     if (!factor_ && reusable_factor()) factor_ = solver->factor();
     const auto seen = samples_of(*solver, y_), moved = samples_of(*solver, probed_);
@@ -107,7 +105,6 @@ class RiskSearch {
   }
 
   const Response& response_;
-  int image_rows_, image_cols_;
   const Plan& plan_;
   std::span<const float> y_;
   double sigma_;
@@ -119,9 +116,9 @@ class RiskSearch {
 
 }  // namespace
 
-Result<LambdaByRisk> lambda_by_risk(const Response& response, int image_rows, int image_cols,
-                                    const Objective& objective, const Plan& plan, std::span<const float> y,
-                                    double sigma, std::optional<Factor> factor, const Progress& progress) {
+Result<LambdaByRisk> lambda_by_risk(const Response& response, const Objective& objective, const Plan& plan,
+                                    std::span<const float> y, double sigma, std::optional<Factor> factor,
+                                    const Progress& progress) {
   if (!std::isfinite(sigma) || sigma < 0.0) {
     return fail(ErrorCode::out_of_range, "sigma",
                 "is " + std::to_string(sigma) + ", expected a finite number of 0 or more");
@@ -131,7 +128,7 @@ Result<LambdaByRisk> lambda_by_risk(const Response& response, int image_rows, in
                 "are " + std::to_string(y.size()) + ", the response has " + std::to_string(response.rows()) + " rows");
   }
   if (sigma == 0.0) return LambdaByRisk{objective.lambda, {}, std::move(factor)};
-  return RiskSearch(response, image_rows, image_cols, plan, y, sigma, std::move(factor), progress).run(objective);
+  return RiskSearch(response, plan, y, sigma, std::move(factor), progress).run(objective);
 }
 
 }  // namespace compueye::recon

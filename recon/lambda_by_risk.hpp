@@ -35,9 +35,8 @@ struct LambdaByRisk {
 /// same lambda. Errors: those of Reconstructor::create(); mismatch (number of samples); out_of_range (sigma negative or
 /// not finite, or samples that cannot be solved). `factor` as for Reconstructor::create(),
 /// for admm in single precision.
-[[nodiscard]] hal::Result<LambdaByRisk> lambda_by_risk(const Response& response, int image_rows, int image_cols,
-                                                       const Objective& objective, const Plan& plan,
-                                                       std::span<const float> y, double sigma,
+[[nodiscard]] hal::Result<LambdaByRisk> lambda_by_risk(const Response& response, const Objective& objective,
+                                                       const Plan& plan, std::span<const float> y, double sigma,
                                                        std::optional<Factor> factor = std::nullopt,
                                                        const Progress& progress = {});
 

@@ -19,8 +19,8 @@ constexpr double expected_pixel_deviation = 0.35;
 /// Even without noise a little shrinkage keeps directions that the eye does not see from running away.
 constexpr double least_share_of_scale = 1e-6;
 
-double median_atom_norm(const Response& response, int image_rows, int image_cols, BasisKind basis) {
-  std::vector<double> norms = atom_norms(response, image_rows, image_cols, basis);
+double median_atom_norm(const Response& response, BasisKind basis) {
+  std::vector<double> norms = atom_norms(response, basis);
   const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
   std::nth_element(norms.begin(), middle, norms.end());
   return *middle;
@@ -40,18 +40,16 @@ double mean_overlap(const Response& response) {
 }  // namespace
 
 double lambda_scale(const Response& response, BasisKind basis) {
-  return basis == BasisKind::identity ? median_atom_norm(response, 1, response.cols(), basis) : mean_overlap(response);
+  return basis == BasisKind::identity ? median_atom_norm(response, basis) : mean_overlap(response);
 }
 
-hal::Result<double> lambda_by_rule(const Response& response, int image_rows, int image_cols, SolverKind solver,
-                                   BasisKind basis, double sigma) {
+hal::Result<double> lambda_by_rule(const Response& response, SolverKind solver, BasisKind basis, double sigma) {
   if (!std::isfinite(sigma) || sigma < 0.0) {
     return hal::fail(hal::ErrorCode::out_of_range, "sigma",
                      "is " + std::to_string(sigma) + ", expected a finite number of 0 or more");
   }
   const bool by_atoms = solver == SolverKind::omp;
-  const double scale =
-      by_atoms ? median_atom_norm(response, image_rows, image_cols, basis) : lambda_scale(response, basis);
+  const double scale = by_atoms ? median_atom_norm(response, basis) : lambda_scale(response, basis);
   const double size = scale > 0.0 ? scale : 1.0;
   if (solver == SolverKind::tikhonov || solver == SolverKind::tsvd) {
     const double deviation = std::max(sigma / expected_pixel_deviation, least_share_of_scale * size);

@@ -24,8 +24,8 @@ namespace compueye::recon {
 ///
 /// All scale with y and A as lambda does. Without noise, or for an A that sees nothing, a millionth of the scale keeps
 /// lambda above zero. Error: out_of_range when sigma is negative or not finite.
-[[nodiscard]] hal::Result<double> lambda_by_rule(const Response& response, int image_rows, int image_cols,
-                                                 SolverKind solver, BasisKind basis, double sigma);
+[[nodiscard]] hal::Result<double> lambda_by_rule(const Response& response, SolverKind solver, BasisKind basis,
+                                                 double sigma);
 
 /// What the rule for l1 takes from the response: median_j ||a_j||_2 for the identity, mean_j ||a_j||_1 for other bases.
 /// Over all N columns, those that nobody sees included.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <variant>
@@ -34,8 +33,7 @@ using hal::fail;
 
 struct Reconstructor::Tables {
   int channels = 0;
-  int image_rows = 0;
-  int image_cols = 0;
+  int image_rows = 0, image_cols = 0;
   Objective objective;
   Plan plan;
   bool rho_by_rule = false;
@@ -57,7 +55,7 @@ struct Reconstructor::Tables {
   hal::Result<void> fill(const Response& response, std::optional<Factor> stored, const Progress& progress) {
     OwnedTables<T>& tables = by_precision.template emplace<OwnedTables<T>>();
     const Response sees = response.select_rows(seeing);
-    if (auto filled = fill_operator(sees, image_rows, image_cols, plan.op, tables); !filled) return filled;
+    if (auto filled = fill_operator(sees, plan.op, tables); !filled) return filled;
     fill_basis(objective.basis, image_rows, image_cols, tables);
     tables.problem.image_rows = static_cast<std::size_t>(image_rows);
     tables.problem.image_cols = static_cast<std::size_t>(image_cols);
@@ -78,12 +76,12 @@ struct Reconstructor::Tables {
   template <class T>
   hal::Result<void> fill_dual_step(const Response& sees, OwnedTables<T>& tables, std::optional<Factor> stored,
                                    const Progress& progress) {
-    const ParityClasses classes(sees.rows(), find_mirror_symmetry(sees, image_rows, image_cols));
+    const ParityClasses classes(sees.rows(), find_mirror_symmetry(sees));
     if (stored && stored->values.size() != modes_size(classes, plan.rank)) return stale(*stored);
     if (stored) {
       factor.values = std::move(stored->values);
     } else {
-      auto made = leading_modes(sees, image_rows, image_cols, plan.rank, progress);
+      auto made = leading_modes(sees, plan.rank, progress);
       if (!made) return tl::unexpected(made.error());
       factor.values = std::move(*made);
     }
@@ -98,19 +96,19 @@ struct Reconstructor::Tables {
   hal::Result<void> fill_factor(const Response& sees, OwnedTables<T>& tables, std::optional<Factor> stored,
                                 const Progress& progress) {
     std::vector<T>& inverse = inverse_of(tables);
-    const ParityClasses classes(sees.rows(), find_mirror_symmetry(sees, image_rows, image_cols));
+    const ParityClasses classes(sees.rows(), find_mirror_symmetry(sees));
     if (stored && stored->values.size() != factor_size(classes)) return stale(*stored);
     if (stored && std::is_same_v<T, float>) {
       factor.values = std::move(stored->values);
     } else {
-      auto made = packed_inverse<T>(sees, image_rows, image_cols, factor.metric, plan.rho, progress);
+      auto made = packed_inverse<T>(sees, factor.metric, plan.rho, progress);
       if (!made) return tl::unexpected(made.error());
       inverse = std::move(*made);
     }
     fill_inverse(classes, inverse, tables);
     if (plan.solver == SolverKind::admm && objective.basis == BasisKind::identity) {
       const PenaltyLevels penalties = fill_schedule(classes, tables);
-      tables.thin_step = thin_step_tables<T>(sees, image_rows, image_cols, classes, penalties.penalties);
+      tables.thin_step = thin_step_tables<T>(sees, classes, penalties.penalties);
       tables.problem.thin_step = tables.thin_step.view;
     }
     return {};
@@ -145,44 +143,38 @@ Reconstructor::Reconstructor(Reconstructor&&) noexcept = default;
 Reconstructor& Reconstructor::operator=(Reconstructor&&) noexcept = default;
 Reconstructor::~Reconstructor() = default;
 
-hal::Result<Reconstructor> Reconstructor::create(const Response& response, int image_rows, int image_cols,
-                                                 const Objective& objective, const Plan& plan,
+hal::Result<Reconstructor> Reconstructor::create(const Response& response, const Objective& objective, const Plan& plan,
                                                  std::optional<Factor> factor, const Progress& progress) {
   if (plan.op && is_lossy(*plan.op)) {
-    return create_as_applied(quantised(response, *plan.op), image_rows, image_cols, objective, plan, std::move(factor),
-                             progress);
+    return create_as_applied(quantised(response, *plan.op), objective, plan, std::move(factor), progress);
   }
-  return create_as_applied(response, image_rows, image_cols, objective, plan, std::move(factor), progress);
+  return create_as_applied(response, objective, plan, std::move(factor), progress);
 }
 
-hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& response, int image_rows, int image_cols,
-                                                            const Objective& objective, const Plan& plan,
-                                                            std::optional<Factor> factor, const Progress& progress) {
+hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& response, const Objective& objective,
+                                                            const Plan& plan, std::optional<Factor> factor,
+                                                            const Progress& progress) {
   const auto checked = check_choice(objective, plan);
   if (!checked) return tl::unexpected(checked.error());
-  if (image_rows < 1 || image_cols < 1 ||
-      static_cast<std::int64_t>(image_rows) * image_cols != static_cast<std::int64_t>(response.cols())) {
+  if (response.image_rows() == 0) {
     return fail(ErrorCode::mismatch, "size",
-                std::to_string(image_rows) + "x" + std::to_string(image_cols) + " has " +
-                    std::to_string(static_cast<std::int64_t>(image_rows) * image_cols) + " pixels, the response has " +
-                    std::to_string(response.cols()) + " columns");
+                "of the picture is not known, the response has " + std::to_string(response.cols()) + " columns");
   }
   auto tables = std::make_unique<Tables>();
   tables->channels = response.rows();
-  tables->image_rows = image_rows;
-  tables->image_cols = image_cols;
+  tables->image_rows = response.image_rows();
+  tables->image_cols = response.image_cols();
   tables->objective = objective;
   tables->plan = plan;
   tables->seeing = response.seeing_rows();
   if (tables->seeing.empty()) {
     return fail(ErrorCode::out_of_range, "response", "has no row with a non-zero entry: this eye sees nothing");
   }
-  const auto values = response.values();
-  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  const double squares = response.squared_norm();
   if (auto ok = check_scale(squares, response.cols()); !ok) return tl::unexpected(ok.error());
-  tables->plan.rho = resolve_rho(response, image_rows, image_cols, objective, plan);
+  tables->plan.rho = resolve_rho(response, objective, plan);
   tables->rho_by_rule = plan.rho == 0.0;
-  tables->factor = wanted_factor(response, image_rows, image_cols, objective, tables->plan);
+  tables->factor = wanted_factor(response, objective, tables->plan);
   if (plan.solver == SolverKind::pdhg) tables->plan.rank = tables->factor.rank;
   if (auto ok = check_in_precision(squares, objective, tables->plan); !ok) return tl::unexpected(ok.error());
   const int most = static_cast<int>(tables->seeing.size());
@@ -198,12 +190,11 @@ hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& resp
   return Reconstructor(std::move(tables));
 }
 
-Factor Reconstructor::wanted_factor(const Response& response, int image_rows, int image_cols,
-                                    const Objective& objective, const Plan& plan) {
+Factor Reconstructor::wanted_factor(const Response& response, const Objective& objective, const Plan& plan) {
   const auto order = static_cast<int>(response.seeing_rows().size());
   const MetricKind metric = metric_of(plan.solver, objective.basis);
   if (plan.solver == SolverKind::pdhg) return {0.0, order, {}, metric, resolve_rank(plan, order)};
-  return {resolve_rho(response, image_rows, image_cols, objective, plan), order, {}, metric, 0};
+  return {resolve_rho(response, objective, plan), order, {}, metric, 0};
 }
 
 int Reconstructor::channels() const noexcept {

@@ -68,14 +68,13 @@ struct Plan {
 /// waits for its workers.
 class Reconstructor {
  public:
-  /// `image_rows * image_cols` must be the response's number of columns. `factor` may hand in a stored one: it is
+  /// The response must know its picture (Response::with_image()). `factor` may hand in a stored one: it is
   /// refused (error stale) when its rho or order does not fit. Errors: usage, mismatch, interrupted, and out_of_range:
   /// a setting beyond its range; a response that sees nothing or whose columns have a norm outside 1e-12..1e12 (root
   /// mean square), because float32 could not hold its factor; a rho too small or too large for the precision.
   /// unsupported: an operator that the response does not fit.
-  [[nodiscard]] static hal::Result<Reconstructor> create(const Response& response, int image_rows, int image_cols,
-                                                         const Objective& objective, const Plan& plan,
-                                                         std::optional<Factor> factor = std::nullopt,
+  [[nodiscard]] static hal::Result<Reconstructor> create(const Response& response, const Objective& objective,
+                                                         const Plan& plan, std::optional<Factor> factor = std::nullopt,
                                                          const Progress& progress = {});
 
   Reconstructor(const Reconstructor&) = delete;
@@ -110,8 +109,7 @@ class Reconstructor {
                                 std::span<std::byte> workspace, std::span<float> x) const noexcept;
 
   /// What the factor of such a plan is, without its values: what a stored one has to be to be used.
-  [[nodiscard]] static Factor wanted_factor(const Response& response, int image_rows, int image_cols,
-                                            const Objective& objective, const Plan& plan);
+  [[nodiscard]] static Factor wanted_factor(const Response& response, const Objective& objective, const Plan& plan);
 
   /// The next frame in this workspace starts cold, whatever the plan says. `workspace` as for solve().
   void forget_last_frame(std::span<std::byte> workspace) const noexcept;
@@ -128,9 +126,9 @@ class Reconstructor {
 
  private:
   struct Tables;
-  static hal::Result<Reconstructor> create_as_applied(const Response& response, int image_rows, int image_cols,
-                                                      const Objective& objective, const Plan& plan,
-                                                      std::optional<Factor> factor, const Progress& progress);
+  static hal::Result<Reconstructor> create_as_applied(const Response& response, const Objective& objective,
+                                                      const Plan& plan, std::optional<Factor> factor,
+                                                      const Progress& progress);
   explicit Reconstructor(std::unique_ptr<Tables> tables) noexcept;
   std::unique_ptr<Tables> tables_;
 };

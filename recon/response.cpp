@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
+#include "hal/try.hpp"
 #include "xxhash.h"
 
 namespace compueye::recon {
@@ -45,7 +47,7 @@ hal::Result<void> check_row(std::int64_t row, int cols, std::span<const std::int
 }  // namespace
 
 hal::Result<Response> Response::from_dense(int rows, int cols, std::vector<double> values) {
-  if (auto ok = check_shape(rows, cols); !ok) return tl::unexpected(ok.error());
+  TRY(check_shape(rows, cols));
   if (values.size() != static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols)) {
     return fail(ErrorCode::mismatch, place,
                 "has " + std::to_string(values.size()) + " values, expected " + std::to_string(rows) + " x " +
@@ -60,12 +62,13 @@ hal::Result<Response> Response::from_dense(int rows, int cols, std::vector<doubl
   r.rows_ = rows;
   r.cols_ = cols;
   r.values_ = std::move(values);
+  r.sum_squares();
   return r;
 }
 
 hal::Result<Response> Response::from_csr(int rows, int cols, std::vector<std::int64_t> row_start,
                                          std::vector<std::int32_t> columns, std::vector<double> values) {
-  if (auto ok = check_shape(rows, cols); !ok) return tl::unexpected(ok.error());
+  TRY(check_shape(rows, cols));
   const auto entries = static_cast<std::int64_t>(values.size());
   if (row_start.size() != static_cast<std::size_t>(rows) + 1 || columns.size() != values.size() ||
       row_start.front() != 0 || row_start.back() != entries || !std::is_sorted(row_start.begin(), row_start.end())) {
@@ -74,8 +77,7 @@ hal::Result<Response> Response::from_csr(int rows, int cols, std::vector<std::in
   for (int m = 0; m < rows; ++m) {
     const auto begin = static_cast<std::size_t>(row_start[static_cast<std::size_t>(m)]);
     const auto count = static_cast<std::size_t>(row_start[static_cast<std::size_t>(m) + 1]) - begin;
-    auto ok = check_row(m, cols, std::span(columns).subspan(begin, count), std::span(values).subspan(begin, count));
-    if (!ok) return tl::unexpected(ok.error());
+    TRY(check_row(m, cols, std::span(columns).subspan(begin, count), std::span(values).subspan(begin, count)));
   }
   Response r;
   r.rows_ = rows;
@@ -83,7 +85,25 @@ hal::Result<Response> Response::from_csr(int rows, int cols, std::vector<std::in
   r.row_start_ = std::move(row_start);
   r.columns_ = std::move(columns);
   r.values_ = std::move(values);
+  r.sum_squares();
   return r;
+}
+
+hal::Result<Response> Response::with_image(int image_rows, int image_cols) && {
+  const bool unknown = image_rows == 0 && image_cols == 0;
+  const std::int64_t pixels = static_cast<std::int64_t>(image_rows) * image_cols;
+  if (!unknown && (image_rows < 1 || image_cols < 1 || pixels != cols_)) {
+    return fail(ErrorCode::mismatch, "size",
+                std::to_string(image_rows) + "x" + std::to_string(image_cols) + " has " + std::to_string(pixels) +
+                    " pixels, the response has " + std::to_string(cols_) + " columns");
+  }
+  image_rows_ = image_rows;
+  image_cols_ = image_cols;
+  return std::move(*this);
+}
+
+void Response::sum_squares() noexcept {
+  squared_norm_ = std::inner_product(values_.begin(), values_.end(), values_.begin(), 0.0);
 }
 
 std::int64_t Response::nonzeros(double above) const noexcept {
@@ -128,6 +148,8 @@ Response Response::select_rows(std::span<const std::int32_t> rows, std::span<con
   Response r;
   r.rows_ = static_cast<int>(rows.size());
   r.cols_ = cols_;
+  r.image_rows_ = image_rows_;
+  r.image_cols_ = image_cols_;
   if (!is_dense()) r.row_start_.push_back(0);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double factor = scale.empty() ? 1.0 : scale[i];
@@ -137,6 +159,27 @@ Response Response::select_rows(std::span<const std::int32_t> rows, std::span<con
     });
     if (!is_dense()) r.row_start_.push_back(static_cast<std::int64_t>(r.values_.size()));
   }
+  r.sum_squares();
+  return r;
+}
+
+Response Response::without_rows(std::span<const int> rows) const {
+  Response r;
+  r.rows_ = rows_;
+  r.cols_ = cols_;
+  r.image_rows_ = image_rows_;
+  r.image_cols_ = image_cols_;
+  r.row_start_.push_back(0);
+  for (int m = 0; m < rows_; ++m) {
+    if (!std::binary_search(rows.begin(), rows.end(), m)) {
+      for_each_in_row(m, [&](std::int32_t col, double value) {
+        r.columns_.push_back(col);
+        r.values_.push_back(value);
+      });
+    }
+    r.row_start_.push_back(static_cast<std::int64_t>(r.values_.size()));
+  }
+  r.sum_squares();
   return r;
 }
 

@@ -22,8 +22,17 @@ class Response {
   [[nodiscard]] static hal::Result<Response> from_csr(int rows, int cols, std::vector<std::int64_t> row_start,
                                                       std::vector<std::int32_t> columns, std::vector<double> values);
 
-  [[nodiscard]] int rows() const noexcept { return rows_; }  ///< M
-  [[nodiscard]] int cols() const noexcept { return cols_; }  ///< N
+  /// The same matrix, said to be of a picture of image_rows x image_cols pixels, row-major; 0 x 0: not known.
+  /// Error: mismatch (not as many pixels as there are columns).
+  [[nodiscard]] hal::Result<Response> with_image(int image_rows, int image_cols) &&;
+  [[nodiscard]] hal::Result<Response> with_image(int image_rows, int image_cols) const& {
+    return Response(*this).with_image(image_rows, image_cols);
+  }
+
+  [[nodiscard]] int rows() const noexcept { return rows_; }              ///< M
+  [[nodiscard]] int cols() const noexcept { return cols_; }              ///< N
+  [[nodiscard]] int image_rows() const noexcept { return image_rows_; }  ///< 0: not known, as of a bare matrix file
+  [[nodiscard]] int image_cols() const noexcept { return image_cols_; }  ///< image_rows * image_cols = N where known
   [[nodiscard]] bool is_dense() const noexcept { return row_start_.empty(); }
   /// Stored entries: rows*cols when dense.
   [[nodiscard]] std::int64_t stored_entries() const noexcept { return static_cast<std::int64_t>(values_.size()); }
@@ -53,6 +62,9 @@ class Response {
   void forward(std::span<const double> x, std::span<double> y) const;
   void adjoint(std::span<const double> y, std::span<double> x) const;
 
+  /// ||A||_F^2
+  [[nodiscard]] double squared_norm() const noexcept { return squared_norm_; }
+
   /// Sum of each row: what an ommatidium reads from an all-white scene.
   [[nodiscard]] std::vector<double> row_sums() const;
 
@@ -62,13 +74,22 @@ class Response {
   /// The given rows, each multiplied by its factor (`scale` empty: by 1). Rows may not repeat.
   [[nodiscard]] Response select_rows(std::span<const std::int32_t> rows, std::span<const double> scale = {}) const;
 
-  /// 64-bit content hash over shape and every stored entry; keys everything that was computed from this A.
+  /// The given rows (ascending) empty, the others as they are, in sparse form: a dead ommatidium tells nothing, and
+  /// with an empty row every solver leaves it out.
+  [[nodiscard]] Response without_rows(std::span<const int> rows) const;
+
+  /// 64-bit content hash over shape and every stored entry; keys everything that was computed from this A. The picture
+  /// is no part of it.
   [[nodiscard]] std::uint64_t content_hash() const;
 
  private:
   Response() = default;
+  void sum_squares() noexcept;
   int rows_ = 0;
   int cols_ = 0;
+  int image_rows_ = 0;
+  int image_cols_ = 0;
+  double squared_norm_ = 0.0;
   std::vector<std::int64_t> row_start_;
   std::vector<std::int32_t> columns_;
   std::vector<double> values_;

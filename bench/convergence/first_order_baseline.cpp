@@ -46,15 +46,15 @@ Products time_products(const EigenBaseline& eigen, const recon::Response& a) {
   return {median_ms([&] { eigen.forward(x, y); }), median_ms([&] { eigen.adjoint(y, x); })};
 }
 
-hal::Result<Contestant> race(const Entry& entry, const recon::Response& response, const Eye& eye,
-                             const std::vector<Sample>& samples, double nmse) {
+hal::Result<Contestant> race(const Entry& entry, const recon::Response& response, const std::vector<Sample>& samples,
+                             double nmse) {
   recon::Objective objective;
   objective.basis = entry.basis;
   objective.constraint = entry.constraint;
   recon::Plan plan;
   plan.solver = entry.solver;
   plan.max_reweighted = 0;
-  auto solvers = make_solvers(response, eye, objective, plan, samples);
+  auto solvers = make_solvers(response, objective, plan, samples);
   if (!solvers) return tl::unexpected(solvers.error());
   Contestant contestant{std::string(entry.name), 0, most_of_theirs, 1e300};
   for (int k = 1; k <= most_of_theirs && contestant.iterations == 0; k += std::max(1, k / 6)) {
@@ -74,7 +74,7 @@ hal::Result<FirstOrderBaseline> measure(const recon::Response& response, const E
   recon::Plan plan;
   plan.solver = SolverKind::pdhg;
   plan.max_reweighted = 0;
-  auto ours = make_solvers(response, eye, objective, plan, samples);
+  auto ours = make_solvers(response, objective, plan, samples);
   if (!ours) return tl::unexpected(ours.error());
   FirstOrderBaseline baseline;
   baseline.noise = std::move(noise);
@@ -86,7 +86,7 @@ hal::Result<FirstOrderBaseline> measure(const recon::Response& response, const E
   const Products plain = time_products(*eigen_plain(a, EigenStorage::csr), a);
   const Products fast = time_products(*eigen_fast_math(a, EigenStorage::csr), a);
   for (const Entry& entry : entries) {
-    auto contestant = race(entry, response, eye, samples, baseline.nmse);
+    auto contestant = race(entry, response, samples, baseline.nmse);
     if (!contestant) return tl::unexpected(contestant.error());
     const int counted = contestant->iterations > 0 ? contestant->iterations : contestant->most;
     contestant->plain_ms = plain.of(entry, counted);

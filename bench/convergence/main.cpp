@@ -46,7 +46,7 @@ hal::Result<Measured> measure(const bench::FrameCase& c) {
   measured.of = c;
   hal::Result<std::vector<recon::Reconstructor>> solvers = hal::fail(hal::ErrorCode::usage, "", "");
   measured.set_up_s =
-      1e-3 * bench::milliseconds([&] { solvers = make_solvers(*response, c.eye, c.objective, c.plan, samples); });
+      1e-3 * bench::milliseconds([&] { solvers = make_solvers(*response, c.objective, c.plan, samples); });
   if (!solvers) return tl::unexpected(solvers.error());
   recon::Reconstructor& first = solvers->front();
   first.forget_modes();

@@ -106,19 +106,18 @@ int Curve::mean_within(double share) const {
   return first;
 }
 
-hal::Result<std::vector<recon::Reconstructor>> make_solvers(const recon::Response& response, const Eye& eye,
-                                                            recon::Objective objective, const recon::Plan& plan,
+hal::Result<std::vector<recon::Reconstructor>> make_solvers(const recon::Response& response, recon::Objective objective,
+                                                            const recon::Plan& plan,
                                                             const std::vector<Sample>& samples) {
   std::vector<recon::Reconstructor> solvers;
   std::optional<recon::Factor> factor;
   const bool same =
       std::all_of(samples.begin(), samples.end(), [&](const Sample& s) { return s.sigma == samples.front().sigma; });
   for (const Sample& sample : samples) {
-    const auto lambda = recon::lambda_by_rule(response, eye.plane.rows, eye.plane.cols, recon::SolverKind::admm,
-                                              objective.basis, sample.sigma);
+    const auto lambda = recon::lambda_by_rule(response, recon::SolverKind::admm, objective.basis, sample.sigma);
     if (!lambda) return tl::unexpected(lambda.error());
     objective.lambda = *lambda;
-    auto made = recon::Reconstructor::create(response, eye.plane.rows, eye.plane.cols, objective, plan, factor);
+    auto made = recon::Reconstructor::create(response, objective, plan, factor);
     if (!made) return tl::unexpected(made.error());
     if (recon::uses_factor(plan.solver)) factor = made->factor();
     solvers.push_back(std::move(*made));

@@ -49,7 +49,7 @@ struct Curve {
 
 /// A solver for every scene with a sigma of its own, or one for all; lambda by rule. They share one factor.
 [[nodiscard]] hal::Result<std::vector<recon::Reconstructor>> make_solvers(const recon::Response& response,
-                                                                          const Eye& eye, recon::Objective objective,
+                                                                          recon::Objective objective,
                                                                           const recon::Plan& plan,
                                                                           const std::vector<Sample>& samples);
 

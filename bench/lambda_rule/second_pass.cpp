@@ -24,7 +24,10 @@ recon::Response scaled_columns(const recon::Response& response, const std::vecto
     });
     start.push_back(static_cast<std::int64_t>(values.size()));
   }
-  return recon::Response::from_csr(response.rows(), response.cols(), start, columns, values).value();
+  return recon::Response::from_csr(response.rows(), response.cols(), start, columns, values)
+      .value()
+      .with_image(response.image_rows(), response.image_cols())
+      .value();
 }
 
 }  // namespace
@@ -34,8 +37,7 @@ std::vector<float> solved(const Case& c, const recon::Response& response, const 
   recon::Plan plan;
   plan.l1_reweighting = l1_reweighting;
   plan.iterations = c.iterations;
-  const auto solver =
-      recon::Reconstructor::create(response, c.object.rows, c.object.cols, objective, plan, factor).value();
+  const auto solver = recon::Reconstructor::create(response, objective, plan, factor).value();
   if (!factor) factor = solver.factor();
   const std::size_t bytes = solver.required_bytes();
   auto* memory = static_cast<std::byte*>(::operator new (bytes, std::align_val_t{64}));

@@ -59,8 +59,7 @@ Sweep SweptEye::sweep(const std::string& scene, std::uint64_t seed, double sigma
     result.debiased = nmse_of(debiased(case_, response_, y, first), truth);
     result.reweighted = nmse_of(reweighted(case_, response_, y, objective(rule), factor_), truth);
   }
-  const auto found = recon::lambda_by_risk(response_, case_.object.rows, case_.object.cols, objective(rule), plan(), y,
-                                           sigma, factor_);
+  const auto found = recon::lambda_by_risk(response_, objective(rule), plan(), y, sigma, factor_);
   result.risk_multiple = found.value().lambda / rule;
   result.by_risk = nmse_at(found.value().lambda, y, truth);
   return result;
@@ -72,9 +71,7 @@ double SweptEye::nmse_by_rule(const std::string& scene, std::uint64_t seed, doub
 }
 
 double SweptEye::rule(double sigma) const {
-  return recon::lambda_by_rule(response_, case_.object.rows, case_.object.cols, recon::SolverKind::admm, case_.basis,
-                               sigma)
-      .value();
+  return recon::lambda_by_rule(response_, recon::SolverKind::admm, case_.basis, sigma).value();
 }
 
 std::vector<float> SweptEye::samples(const std::string& scene, const hal::Image& truth, std::uint64_t seed,

@@ -12,22 +12,13 @@ namespace compueye::firmware {
 namespace {
 
 /// Rows below the least sum become empty, so that their pixels go to a neighbour.
-hal::Result<recon::Response> without_weak_rows(const recon::Response& response) {
+recon::Response without_weak_rows(const recon::Response& response) {
   const std::vector<double> sums = response.row_sums();
-  std::vector<std::int64_t> row_start{0};
-  std::vector<std::int32_t> columns;
-  std::vector<double> values;
+  std::vector<int> weak;
   for (int m = 0; m < response.rows(); ++m) {
-    if (sums[static_cast<std::size_t>(m)] >= least_conventional_row_sum) {
-      response.for_each_in_row(m, [&](std::int32_t n, double value) {
-        columns.push_back(n);
-        values.push_back(value);
-      });
-    }
-    row_start.push_back(static_cast<std::int64_t>(values.size()));
+    if (!(sums[static_cast<std::size_t>(m)] >= least_conventional_row_sum)) weak.push_back(m);
   }
-  return recon::Response::from_csr(response.rows(), response.cols(), std::move(row_start), std::move(columns),
-                                   std::move(values));
+  return response.without_rows(weak);
 }
 
 hal::Result<std::vector<float>> one_frame(const Board& narrow, const sim::Scene& scene, std::uint64_t seed) {
@@ -56,9 +47,7 @@ hal::Result<hal::Image> conventional_picture(const Board& board, const sim::Scen
   }
   const auto nominal = calib::nominal_response(narrow->eye, narrow->object);
   if (!nominal) return tl::unexpected(nominal.error());
-  const auto response = without_weak_rows(*nominal);
-  if (!response) return tl::unexpected(response.error());
-  const auto image = recon::ConventionalImage::create(*response, narrow->object.rows, narrow->object.cols);
+  const auto image = recon::ConventionalImage::create(without_weak_rows(*nominal));
   if (!image) return tl::unexpected(image.error());
   const auto y = one_frame(*narrow, scene, seed);
   if (!y) return tl::unexpected(y.error());

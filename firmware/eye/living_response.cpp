@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "calib/nominal.hpp"
-#include "firmware/eye/dead_ommatidia.hpp"
 
 namespace compueye::firmware {
 
@@ -12,7 +11,7 @@ hal::Result<LivingResponse> living_response(const Board& board, const recon::Pro
   if (!response) return tl::unexpected(std::move(response.error()));
   std::vector<std::uint8_t> sees(static_cast<std::size_t>(response->rows()), 0);
   for (const std::int32_t m : response->seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
-  if (!board.sensor.dead.empty()) response = without_dead(*response, board.sensor.dead);
+  if (!board.sensor.dead.empty()) response = response->without_rows(board.sensor.dead);
   return LivingResponse{std::move(*response), std::move(sees)};
 }
 

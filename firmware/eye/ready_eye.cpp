@@ -10,11 +10,10 @@
 
 namespace compueye::firmware {
 
-hal::Result<LambdaChoice> choose_lambda(const recon::Response& response, int image_rows, int image_cols,
-                                        recon::SolverKind solver, recon::BasisKind basis, std::optional<double> by_hand,
-                                        double sigma) {
+hal::Result<LambdaChoice> choose_lambda(const recon::Response& response, recon::SolverKind solver,
+                                        recon::BasisKind basis, std::optional<double> by_hand, double sigma) {
   if (by_hand) return LambdaChoice{*by_hand, false, 0.0};
-  return LambdaChoice{TRY(recon::lambda_by_rule(response, image_rows, image_cols, solver, basis, sigma)), true, sigma};
+  return LambdaChoice{TRY(recon::lambda_by_rule(response, solver, basis, sigma)), true, sigma};
 }
 
 hal::Result<ReadyEye> ReadyEye::make(const Board& board, const std::string& cache, const recon::Progress& progress) {
@@ -34,20 +33,19 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const LivingResponse& l
   if (progress && !progress("lambda by rule", 0.0, 0.0)) {
     return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");
   }
-  const int rows = board.object.rows, cols = board.object.cols;
   recon::Plan plan = board.plan;
   // As many as the correction lets pass, so that no usable frame is too much for the solver.
   const auto seeing = static_cast<double>(std::count(eye.sees_.begin(), eye.sees_.end(), 1));
   plan.max_reweighted = static_cast<int>(std::ceil(board.sensor.max_missing_share * seeing + 1e-9));
   recon::Objective objective = board.objective;
-  eye.lambda_ = TRY(choose_lambda(a, rows, cols, plan.solver, objective.basis, board.lambda, board.noise_sigma()));
+  eye.lambda_ = TRY(choose_lambda(a, plan.solver, objective.basis, board.lambda, board.noise_sigma()));
   objective.lambda = eye.lambda_.value;
   const bool cached = recon::uses_factor(plan.solver) && plan.precision == recon::Precision::f32;
-  const recon::Factor wanted = recon::Reconstructor::wanted_factor(a, rows, cols, objective, plan);
+  const recon::Factor wanted = recon::Reconstructor::wanted_factor(a, objective, plan);
   KeptFactor factor(cached ? cache : std::string(),
                     {a.content_hash(), wanted.rho, wanted.order, wanted.metric, wanted.rank});
   eye.reconstructor_ = std::make_unique<recon::Reconstructor>(
-      TRY(recon::Reconstructor::create(a, rows, cols, objective, plan, factor.take(), progress)));
+      TRY(recon::Reconstructor::create(a, objective, plan, factor.take(), progress)));
   if (cached && factor.origin() != FactorOrigin::kept) factor.keep(eye.reconstructor_->factor());
   eye.factor_origin_ = factor.origin();
   eye.notes_ = factor.notes();

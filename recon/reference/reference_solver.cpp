@@ -176,8 +176,8 @@ Matrix basis_matrix(BasisKind basis, int image_rows, int image_cols) {
   return {};
 }
 
-ReferenceResult solve_reference(const Response& response, int image_rows, int image_cols, const Objective& objective,
-                                std::span<const double> y, std::span<const double> weights) {
+ReferenceResult solve_reference(const Response& response, const Objective& objective, std::span<const double> y,
+                                std::span<const double> weights) {
   const Matrix a = dense(response);
   const Vector w = weights_or_ones(weights, response.rows());
   const Vector samples = usable_samples(y, w);
@@ -188,26 +188,26 @@ ReferenceResult solve_reference(const Response& response, int image_rows, int im
     x = least_squares(root.asDiagonal() * a, root.cwiseProduct(samples));
     result.converged = x.allFinite();
   } else {
-    const Matrix psi = basis_matrix(objective.basis, image_rows, image_cols);
+    const Matrix psi = basis_matrix(objective.basis, response.image_rows(), response.image_cols());
     const QuadraticSolution solution = solve_interior_point(quadratic_program(a, samples, w, psi, objective));
     x = solution.z.head(a.cols());
     result.gap = solution.gap;
     result.converged = solution.converged;
   }
   result.x.assign(x.data(), x.data() + x.size());
-  result.objective = objective_value(response, image_rows, image_cols, objective, y, weights, result.x);
+  result.objective = objective_value(response, objective, y, weights, result.x);
   return result;
 }
 
-double objective_value(const Response& response, int image_rows, int image_cols, const Objective& objective,
-                       std::span<const double> y, std::span<const double> weights, std::span<const double> x) {
+double objective_value(const Response& response, const Objective& objective, std::span<const double> y,
+                       std::span<const double> weights, std::span<const double> x) {
   const Vector w = weights_or_ones(weights, response.rows());
   const Vector samples = usable_samples(y, w);
   const Eigen::Map<const Vector> pixels(x.data(), static_cast<Eigen::Index>(x.size()));
   const Vector residual = dense(response) * pixels - samples;
   const double fit = 0.5 * residual.dot(w.cwiseProduct(residual));
   if (objective.lambda == 0.0) return fit;
-  const Vector coefficients = basis_matrix(objective.basis, image_rows, image_cols) * pixels;
+  const Vector coefficients = basis_matrix(objective.basis, response.image_rows(), response.image_cols()) * pixels;
   return fit + objective.lambda * coefficients.cwiseAbs().sum();
 }
 

@@ -10,7 +10,7 @@ namespace compueye::recon {
 namespace {
 
 /// Those of A's columns, or the sums over its rows' squared transforms.
-std::vector<double> squared_atom_norms(const Response& response, int image_rows, int image_cols, BasisKind basis) {
+std::vector<double> squared_atom_norms(const Response& response, BasisKind basis) {
   const auto n = static_cast<std::size_t>(response.cols());
   std::vector<double> squares(n, 0.0), row(n, 0.0), coefficients(n);
   if (basis == BasisKind::identity) {
@@ -20,7 +20,7 @@ std::vector<double> squared_atom_norms(const Response& response, int image_rows,
     return squares;
   }
   OwnedTables<double> tables;
-  fill_basis(basis == BasisKind::tv ? BasisKind::dct : basis, image_rows, image_cols, tables);
+  fill_basis(basis == BasisKind::tv ? BasisKind::dct : basis, response.image_rows(), response.image_cols(), tables);
   std::vector<double> scratch(tables.problem.psi.scratch_size());
   for (const std::int32_t m : response.seeing_rows()) {
     std::fill(row.begin(), row.end(), 0.0);
@@ -33,8 +33,8 @@ std::vector<double> squared_atom_norms(const Response& response, int image_rows,
 
 }  // namespace
 
-std::vector<double> atom_norms(const Response& response, int image_rows, int image_cols, BasisKind basis) {
-  std::vector<double> norms = squared_atom_norms(response, image_rows, image_cols, basis);
+std::vector<double> atom_norms(const Response& response, BasisKind basis) {
+  std::vector<double> norms = squared_atom_norms(response, basis);
   for (double& norm : norms) norm = std::sqrt(norm);
   return norms;
 }

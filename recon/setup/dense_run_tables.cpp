@@ -61,7 +61,7 @@ void cover(const std::int32_t* begin, const std::int32_t* end, int band_end, Vis
 std::vector<int> bands_of(int pixels, int image_cols) {
   constexpr int many = 12, worth_it = 96 * 96;
   std::vector<int> ends;
-  const int rows = pixels / image_cols;
+  const int rows = image_cols > 0 ? pixels / image_cols : 0;
   for (int band = 1; pixels >= worth_it && image_cols >= group_pixels && rows >= many && band < many; ++band) {
     ends.push_back(rows * band / many * image_cols);
   }
@@ -178,9 +178,9 @@ class Writer {
 }  // namespace
 
 template <class T>
-std::optional<DenseRunTables<T>> dense_run_tables(const Response& seeing, int image_cols, core::RunValues stored) {
+std::optional<DenseRunTables<T>> dense_run_tables(const Response& seeing, core::RunValues stored) {
   if (seeing.cols() < least_run_pixels) return std::nullopt;
-  const std::vector<int> band_ends = bands_of(seeing.cols(), image_cols);
+  const std::vector<int> band_ends = bands_of(seeing.cols(), seeing.image_cols());
   DenseRunTables<T> tables;
   Block block(seeing);
   Writer<T> writer(seeing, stored, tables);
@@ -203,9 +203,9 @@ std::optional<DenseRunTables<T>> dense_run_tables(const Response& seeing, int im
   return tables;
 }
 
-std::int64_t dense_run_values(const Response& seeing, int image_cols) {
+std::int64_t dense_run_values(const Response& seeing) {
   if (seeing.cols() < least_run_pixels) return std::numeric_limits<std::int64_t>::max();
-  const std::vector<int> band_ends = bands_of(seeing.cols(), image_cols);
+  const std::vector<int> band_ends = bands_of(seeing.cols(), seeing.image_cols());
   Block block(seeing);
   std::int64_t groups = 0;
   for (int m = 0; m < seeing.rows(); m += rows_at_once) {
@@ -215,7 +215,7 @@ std::int64_t dense_run_values(const Response& seeing, int image_cols) {
   return groups * group_pixels * rows_at_once;
 }
 
-template std::optional<DenseRunTables<float>> dense_run_tables(const Response&, int, core::RunValues);
-template std::optional<DenseRunTables<double>> dense_run_tables(const Response&, int, core::RunValues);
+template std::optional<DenseRunTables<float>> dense_run_tables(const Response&, core::RunValues);
+template std::optional<DenseRunTables<double>> dense_run_tables(const Response&, core::RunValues);
 
 }  // namespace compueye::recon

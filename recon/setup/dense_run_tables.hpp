@@ -34,12 +34,11 @@ struct DenseRunTables {
 inline constexpr int least_run_pixels = 16;
 
 /// A response as dense runs; for bf16 and int8 it must be what quantised() makes of one. Nothing for a picture of fewer
-/// than least_run_pixels pixels. `image_cols` says where bands may end.
+/// than least_run_pixels pixels.
 template <class T>
-[[nodiscard]] std::optional<DenseRunTables<T>> dense_run_tables(const Response& seeing, int image_cols,
-                                                                core::RunValues stored);
+[[nodiscard]] std::optional<DenseRunTables<T>> dense_run_tables(const Response& seeing, core::RunValues stored);
 
 /// How many values the runs hold, zeros that fill them up included: to be compared with other forms.
-[[nodiscard]] std::int64_t dense_run_values(const Response& seeing, int image_cols);
+[[nodiscard]] std::int64_t dense_run_values(const Response& seeing);
 
 }  // namespace compueye::recon

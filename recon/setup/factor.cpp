@@ -89,9 +89,9 @@ std::size_t factor_size(const ParityClasses& classes) noexcept {
 }
 
 template <class T>
-hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols, MetricKind metric,
-                                           double rho, const Progress& progress) {
-  ParityGram gram(seeing, image_rows, image_cols, metric);
+hal::Result<std::vector<T>> packed_inverse(const Response& seeing, MetricKind metric, double rho,
+                                           const Progress& progress) {
+  ParityGram gram(seeing, metric);
   constexpr double rounding = 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon());
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
   if (auto done = invert_blocks(gram, rho, rounding, progress); !done) return tl::unexpected(done.error());
@@ -106,8 +106,7 @@ hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_row
   return packed;
 }
 
-template hal::Result<std::vector<float>> packed_inverse(const Response&, int, int, MetricKind, double, const Progress&);
-template hal::Result<std::vector<double>> packed_inverse(const Response&, int, int, MetricKind, double,
-                                                         const Progress&);
+template hal::Result<std::vector<float>> packed_inverse(const Response&, MetricKind, double, const Progress&);
+template hal::Result<std::vector<double>> packed_inverse(const Response&, MetricKind, double, const Progress&);
 
 }  // namespace compueye::recon

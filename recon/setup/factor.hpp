@@ -49,12 +49,12 @@ class ParityClasses;
 /// Values that the triangles of all classes take.
 [[nodiscard]] std::size_t factor_size(const ParityClasses& classes) noexcept;
 
-/// (A K0^-1 A' + rho I)^-1 computed in double, packed as Factor::inverse is, rounded once to T. `seeing` has no blind
-/// rows and lies on an image_rows x image_cols picture; rho > 0.
+/// (A K0^-1 A' + rho I)^-1 computed in double, packed as Factor::values are, rounded once to T. `seeing` has no blind
+/// rows; rho > 0.
 /// Errors: interrupted; out_of_range when rho is too small for the matrix to be inverted in double or its inverse to
 /// be kept in T (condition number times rounding error of T above a half).
 template <class T>
-[[nodiscard]] hal::Result<std::vector<T>> packed_inverse(const Response& seeing, int image_rows, int image_cols,
-                                                         MetricKind metric, double rho, const Progress& progress);
+[[nodiscard]] hal::Result<std::vector<T>> packed_inverse(const Response& seeing, MetricKind metric, double rho,
+                                                         const Progress& progress);
 
 }  // namespace compueye::recon

@@ -17,11 +17,9 @@ bool sums(OperatorKind kind) {
 
 }  // namespace
 
-GramMatrix::GramMatrix(const Response& response, int image_rows, int image_cols, MetricKind metric)
-    : response_(response) {
-  if (const auto chosen = choose_operator(response, image_rows, image_cols, std::nullopt);
-      chosen && sums(chosen->kind)) {
-    sums_ = running_sum_tables<double>(response, image_rows, image_cols, chosen->images, chosen->transposed);
+GramMatrix::GramMatrix(const Response& response, MetricKind metric) : response_(response) {
+  if (const auto chosen = choose_operator(response, std::nullopt); chosen && sums(chosen->kind)) {
+    sums_ = running_sum_tables<double>(response, chosen->images, chosen->transposed);
   }
   std::int64_t entry = 0;
   for (int m = 0; m < response.rows(); ++m) {
@@ -38,14 +36,14 @@ GramMatrix::GramMatrix(const Response& response, int image_rows, int image_cols,
   }
   first_run_.push_back(runs_.size());
   if (metric == MetricKind::identity) return;
-  row_table_ = make_dct_table<double>(image_rows);
-  col_table_ = make_dct_table<double>(image_cols);
-  for (const double eigenvalue : smoothing_eigenvalues(image_rows, image_cols)) {
+  row_table_ = make_dct_table<double>(response.image_rows());
+  col_table_ = make_dct_table<double>(response.image_cols());
+  for (const double eigenvalue : smoothing_eigenvalues(response.image_rows(), response.image_cols())) {
     inverse_eigenvalues_.push_back(1.0 / eigenvalue);
   }
   metric_ = {inverse_eigenvalues_.data(),
-             {{static_cast<std::size_t>(image_rows), row_table_.data()},
-              {static_cast<std::size_t>(image_cols), col_table_.data()}}};
+             {{static_cast<std::size_t>(response.image_rows()), row_table_.data()},
+              {static_cast<std::size_t>(response.image_cols()), col_table_.data()}}};
 }
 
 GramMatrix::Scratch GramMatrix::make_scratch() const {

@@ -20,7 +20,7 @@ class GramMatrix {
   GramMatrix(const GramMatrix&) = delete;
   GramMatrix& operator=(const GramMatrix&) = delete;
   ~GramMatrix() = default;
-  GramMatrix(const Response& response, int image_rows, int image_cols, MetricKind metric);
+  GramMatrix(const Response& response, MetricKind metric);
 
   /// What row() works in, one a thread.
   struct Scratch {

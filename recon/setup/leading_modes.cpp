@@ -55,9 +55,8 @@ std::size_t modes_size(const ParityClasses& classes, int rank) noexcept {
   return total;
 }
 
-hal::Result<std::vector<float>> leading_modes(const Response& seeing, int image_rows, int image_cols, int rank,
-                                              const Progress& progress) {
-  ParityGram gram(seeing, image_rows, image_cols, MetricKind::identity);
+hal::Result<std::vector<float>> leading_modes(const Response& seeing, int rank, const Progress& progress) {
+  ParityGram gram(seeing, MetricKind::identity);
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
   const ParityClasses& classes = gram.classes();
   std::vector<SymmetricModes> pairs(classes.count());

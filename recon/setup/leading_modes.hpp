@@ -20,7 +20,6 @@ namespace compueye::recon {
 /// modes_of_class() eigenvalues, largest first; the next eigenvalue, which bounds all that are left out (0: none is);
 /// then the vectors, row-major, a row of A (or an orbit of rows) each. `seeing` has no blind rows; rank >= 1.
 /// Seconds for 4,564 rows that are mirror symmetric. Errors: interrupted; unsupported: the eigenvalues do not settle.
-[[nodiscard]] hal::Result<std::vector<float>> leading_modes(const Response& seeing, int image_rows, int image_cols,
-                                                            int rank, const Progress& progress);
+[[nodiscard]] hal::Result<std::vector<float>> leading_modes(const Response& seeing, int rank, const Progress& progress);
 
 }  // namespace compueye::recon

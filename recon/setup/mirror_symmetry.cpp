@@ -23,8 +23,8 @@ struct Flip {
 /// entry by entry.
 class MirrorSearch {
  public:
-  MirrorSearch(const Response& response, int image_rows, int image_cols)
-      : response_(response), image_rows_(image_rows), image_cols_(image_cols) {
+  MirrorSearch(const Response& response)
+      : response_(response), image_rows_(response.image_rows()), image_cols_(response.image_cols()) {
     mirrored_.resize(static_cast<std::size_t>(response.cols()));
     double largest = 0.0;
     for (int m = 0; m < response.rows(); ++m) {
@@ -116,11 +116,11 @@ class MirrorSearch {
 
 }  // namespace
 
-MirrorSymmetry find_mirror_symmetry(const Response& response, int image_rows, int image_cols) {
+MirrorSymmetry find_mirror_symmetry(const Response& response) {
   Permutation identity(static_cast<std::size_t>(response.rows()));
   std::iota(identity.begin(), identity.end(), 0);
   MirrorSymmetry symmetry{{identity}, {{1}}};
-  MirrorSearch search(response, image_rows, image_cols);
+  MirrorSearch search(response);
   const auto left_right = search.find({.left_right = true});
   const auto up_down = search.find({.up_down = true});
   if (left_right) {
@@ -140,9 +140,9 @@ MirrorSymmetry find_mirror_symmetry(const Response& response, int image_rows, in
   return symmetry;
 }
 
-std::vector<std::int32_t> find_diagonal_symmetry(const Response& response, int image_rows, int image_cols) {
-  if (image_rows != image_cols) return {};
-  return MirrorSearch(response, image_rows, image_cols).find({.transposed = true}).value_or(Permutation{});
+std::vector<std::int32_t> find_diagonal_symmetry(const Response& response) {
+  if (response.image_rows() != response.image_cols()) return {};
+  return MirrorSearch(response).find({.transposed = true}).value_or(Permutation{});
 }
 
 }  // namespace compueye::recon

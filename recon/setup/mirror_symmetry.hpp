@@ -18,13 +18,12 @@ struct MirrorSymmetry {
   [[nodiscard]] std::size_t order() const noexcept { return permutations.size(); }
 };
 
-/// Looks for left-right and up-down symmetry of a response on an image_rows x image_cols picture. Entries may differ by
+/// Looks for left-right and up-down symmetry of a response on its picture. Entries may differ by
 /// 1e-11 of the largest.
-[[nodiscard]] MirrorSymmetry find_mirror_symmetry(const Response& response, int image_rows, int image_cols);
+[[nodiscard]] MirrorSymmetry find_mirror_symmetry(const Response& response);
 
 /// Looks for symmetry about the diagonal of a square picture: the row that is the transposed image of each row, its own
 /// inverse; empty where there is none. Entries may differ as above.
-[[nodiscard]] std::vector<std::int32_t> find_diagonal_symmetry(const Response& response, int image_rows,
-                                                               int image_cols);
+[[nodiscard]] std::vector<std::int32_t> find_diagonal_symmetry(const Response& response);
 
 }  // namespace compueye::recon

@@ -24,19 +24,19 @@ hal::Result<OperatorChoice> refused(std::string why) {
 }
 
 /// Eight rows at once halve the taps of four and fold the picture twice.
-OperatorChoice running_sums_of(const Response& seeing, int image_rows, int image_cols, double taps) {
-  OperatorChoice choice{OperatorKind::running_sums, find_mirror_symmetry(seeing, image_rows, image_cols), {}};
-  if (rows_sharing_tables(image_rows, image_cols, choice.images, {}) == 1) return choice;
+OperatorChoice running_sums_of(const Response& seeing, double taps) {
+  OperatorChoice choice{OperatorKind::running_sums, find_mirror_symmetry(seeing), {}};
+  if (rows_sharing_tables(seeing.image_rows(), seeing.image_cols(), choice.images, {}) == 1) return choice;
   choice.kind = OperatorKind::running_sums_symmetric;
   if (taps / 8.0 < fold_cost * static_cast<double>(seeing.cols())) return choice;
-  choice.transposed = find_diagonal_symmetry(seeing, image_rows, image_cols);
-  if (rows_sharing_tables(image_rows, image_cols, choice.images, choice.transposed) == 8) {
+  choice.transposed = find_diagonal_symmetry(seeing);
+  if (rows_sharing_tables(seeing.image_rows(), seeing.image_cols(), choice.images, choice.transposed) == 8) {
     choice.kind = OperatorKind::running_sums_diagonal;
   }
   return choice;
 }
 
-hal::Result<OperatorChoice> as_asked(const Response& seeing, int image_rows, int image_cols, OperatorKind kind) {
+hal::Result<OperatorChoice> as_asked(const Response& seeing, OperatorKind kind) {
   constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();  // row starts are 32 bits wide
   const std::int64_t entries = seeing.nonzeros();
   switch (kind) {
@@ -51,17 +51,17 @@ hal::Result<OperatorChoice> as_asked(const Response& seeing, int image_rows, int
     case OperatorKind::running_sums:
     case OperatorKind::running_sums_symmetric:
     case OperatorKind::running_sums_diagonal: {
-      if (!running_sums_fit(image_rows, image_cols)) {
+      if (!running_sums_fit(seeing.image_rows(), seeing.image_cols())) {
         return refused(
             "running sums number at most 65536 pixels in a quarter of the picture; expected dense-runs or csr");
       }
-      const std::int64_t taps = running_sum_taps(seeing, image_rows, image_cols);
+      const std::int64_t taps = running_sum_taps(seeing);
       if (taps >= entries) {
         return refused("running sums of this response have " + std::to_string(taps) + " differences for " +
                        std::to_string(entries) +
                        " entries, for its rows are not flat; expected dense-runs, csr or dense");
       }
-      return running_sums_of(seeing, image_rows, image_cols, static_cast<double>(taps));
+      return running_sums_of(seeing, static_cast<double>(taps));
     }
     case OperatorKind::dense_runs:
     case OperatorKind::dense_runs_bf16:
@@ -77,24 +77,23 @@ hal::Result<OperatorChoice> as_asked(const Response& seeing, int image_rows, int
 
 }  // namespace
 
-hal::Result<OperatorChoice> choose_operator(const Response& seeing, int image_rows, int image_cols,
-                                            std::optional<OperatorKind> asked) {
-  if (asked) return as_asked(seeing, image_rows, image_cols, *asked);
+hal::Result<OperatorChoice> choose_operator(const Response& seeing, std::optional<OperatorKind> asked) {
+  if (asked) return as_asked(seeing, *asked);
   const auto sparse = static_cast<double>(seeing.nonzeros()), pixels = static_cast<double>(seeing.cols());
   const double dense = dense_entry_cost * static_cast<double>(seeing.rows()) * pixels;
   double least = std::min(dense, sparse);
   OperatorKind plain = dense < sparse ? OperatorKind::dense : OperatorKind::csr;
-  const double runs = run_value_cost * static_cast<double>(dense_run_values(seeing, image_cols));
+  const double runs = run_value_cost * static_cast<double>(dense_run_values(seeing));
   if (runs < least) {
     least = runs;
     plain = OperatorKind::dense_runs;
   }
-  const auto taps = static_cast<double>(running_sum_taps(seeing, image_rows, image_cols));
-  if (running_sums_fit(image_rows, image_cols) && taps / 4.0 + pixels < least) {
-    OperatorChoice sums = running_sums_of(seeing, image_rows, image_cols, taps);
+  const auto taps = static_cast<double>(running_sum_taps(seeing));
+  if (running_sums_fit(seeing.image_rows(), seeing.image_cols()) && taps / 4.0 + pixels < least) {
+    OperatorChoice sums = running_sums_of(seeing, taps);
     if (sums.kind != OperatorKind::running_sums || taps + pixels < least) return sums;
   }
-  return as_asked(seeing, image_rows, image_cols, plain);
+  return as_asked(seeing, plain);
 }
 
 }  // namespace compueye::recon

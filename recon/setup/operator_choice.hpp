@@ -22,7 +22,6 @@ struct OperatorChoice {
 /// flat runs, dense runs where they are other runs, else dense or sparse. Never a lossy one. `asked` sets the form:
 /// error unsupported, saying which would do, when running sums have no fewer differences than there are entries, the
 /// picture is too small for a run or too large for running sums, or sparse entries outnumber 32 bits.
-[[nodiscard]] hal::Result<OperatorChoice> choose_operator(const Response& seeing, int image_rows, int image_cols,
-                                                          std::optional<OperatorKind> asked);
+[[nodiscard]] hal::Result<OperatorChoice> choose_operator(const Response& seeing, std::optional<OperatorKind> asked);
 
 }  // namespace compueye::recon

@@ -5,11 +5,10 @@
 
 namespace compueye::recon {
 
-hal::Result<OperatorFigures> operator_figures(const Response& response, int image_rows, int image_cols,
-                                              std::optional<OperatorKind> asked) {
+hal::Result<OperatorFigures> operator_figures(const Response& response, std::optional<OperatorKind> asked) {
   const Response applied = quantised(response, asked.value_or(OperatorKind::csr));
   OwnedTables<float> tables;
-  return fill_operator(applied.select_rows(applied.seeing_rows()), image_rows, image_cols, asked, tables).map([&] {
+  return fill_operator(applied.select_rows(applied.seeing_rows()), asked, tables).map([&] {
     const core::LinearOperator<float>& a = tables.problem.a;
     return OperatorFigures{a.kind, core::bytes(a), core::flops(a)};
   });

@@ -17,7 +17,7 @@ struct OperatorFigures {
 };
 
 /// Of the seeing rows, in the form that Plan::op asks for. Errors: those of choose_operator().
-[[nodiscard]] hal::Result<OperatorFigures> operator_figures(const Response& response, int image_rows, int image_cols,
+[[nodiscard]] hal::Result<OperatorFigures> operator_figures(const Response& response,
                                                             std::optional<OperatorKind> asked);
 
 }  // namespace compueye::recon

@@ -6,9 +6,8 @@
 
 namespace compueye::recon {
 
-ParityGram::ParityGram(const Response& seeing, int image_rows, int image_cols, MetricKind metric)
-    : gram_(seeing, image_rows, image_cols, metric),
-      classes_(seeing.rows(), find_mirror_symmetry(seeing, image_rows, image_cols)) {
+ParityGram::ParityGram(const Response& seeing, MetricKind metric)
+    : gram_(seeing, metric), classes_(seeing.rows(), find_mirror_symmetry(seeing)) {
   for (std::size_t c = 0; c < classes_.count(); ++c) blocks_.emplace_back(classes_.order(c), classes_.order(c));
 }
 

@@ -14,8 +14,8 @@ namespace compueye::recon {
 /// sixteenth where the eye is mirror symmetric. In double.
 class ParityGram {
  public:
-  /// `seeing` has no blind rows, lies on an image_rows x image_cols picture and outlives this.
-  ParityGram(const Response& seeing, int image_rows, int image_cols, MetricKind metric);
+  /// `seeing` has no blind rows and outlives this.
+  ParityGram(const Response& seeing, MetricKind metric);
 
   /// Computes all blocks. Error: interrupted.
   [[nodiscard]] hal::Result<void> fill(const Progress& progress);

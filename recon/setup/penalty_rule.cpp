@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "recon/setup/deflation_rule.hpp"
@@ -16,15 +15,11 @@ constexpr double share_of_column_norm = 0.06;
 constexpr double share_for_differences = 0.1;
 constexpr double share_with_few_modes = 0.021;
 
-double squared_norm(const Response& response) {
-  const auto values = response.values();
-  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
-}
-
 /// ||A D'||_F^2: over each row as a picture, the squared differences of neighbouring pixels. (a - b)^2 summed over
 /// pairs is each square as often as it has neighbours, less twice the products.
-double squared_difference_norm(const Response& response, int image_rows, int image_cols) {
+double squared_difference_norm(const Response& response) {
   std::vector<double> picture(static_cast<std::size_t>(response.cols()), 0.0);
+  const int image_rows = response.image_rows(), image_cols = response.image_cols();
   const auto width = static_cast<std::size_t>(image_cols);
   double sum = 0.0;
   for (int m = 0; m < response.rows(); ++m) {
@@ -44,18 +39,17 @@ double squared_difference_norm(const Response& response, int image_rows, int ima
 
 }  // namespace
 
-double resolve_rho(const Response& response, int image_rows, int image_cols, const Objective& objective,
-                   const Plan& plan) {
+double resolve_rho(const Response& response, const Objective& objective, const Plan& plan) {
   if (plan.solver == SolverKind::tikhonov) return objective.lambda;
   if (plan.rho > 0.0) return plan.rho;
-  const double squares = squared_norm(response);
+  const double squares = response.squared_norm();
   const double by_columns = share_of_column_norm * squares / response.cols();
   const auto order = static_cast<int>(response.seeing_rows().size());
   if (plan.solver == SolverKind::pdhg && resolve_rank(plan, order) < order) {
     return share_with_few_modes * squares / response.cols();
   }
   if (metric_of(plan.solver, objective.basis) == MetricKind::identity) return by_columns;
-  const double differences = squared_difference_norm(response, image_rows, image_cols);
+  const double differences = squared_difference_norm(response);
   // Fields that cover the picture evenly have no edge at all.
   const double by_edges = share_for_differences * std::sqrt(squares) * std::sqrt(std::max(differences, 0.0));
   return by_edges > 1e-3 * by_columns * response.cols() ? by_edges / response.cols() : by_columns;

@@ -24,8 +24,7 @@ namespace compueye::recon {
 /// sigma^2 = .1, 5, 7 and 10 take 42, 30 and 27 iterations to 5 % of the converged NMSE in the DCT, 50, 40 and 36 in
 /// total variation; at 30 dB, 2, 2 and more than 60.
 ///
-/// All scale as A^2 does, and not with the unit of x. `image_rows * image_cols` must be the number of A's columns.
-[[nodiscard]] double resolve_rho(const Response& response, int image_rows, int image_cols, const Objective& objective,
-                                 const Plan& plan);
+/// All scale as A^2 does, and not with the unit of x.
+[[nodiscard]] double resolve_rho(const Response& response, const Objective& objective, const Plan& plan);
 
 }  // namespace compueye::recon

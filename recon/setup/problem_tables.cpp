@@ -81,9 +81,8 @@ void fill_numbers(const Objective& objective, const Plan& plan, core::FrameProbl
 }  // namespace
 
 template <class T>
-hal::Result<void> fill_operator(const Response& seeing, int image_rows, int image_cols,
-                                std::optional<OperatorKind> asked, OwnedTables<T>& tables) {
-  const auto chosen = choose_operator(seeing, image_rows, image_cols, asked);
+hal::Result<void> fill_operator(const Response& seeing, std::optional<OperatorKind> asked, OwnedTables<T>& tables) {
+  const auto chosen = choose_operator(seeing, asked);
   if (!chosen) return tl::unexpected(chosen.error());
   core::LinearOperator<T>& a = tables.problem.a;
   a.kind = chosen->kind;
@@ -93,13 +92,13 @@ hal::Result<void> fill_operator(const Response& seeing, int image_rows, int imag
     case OperatorKind::running_sums:
     case OperatorKind::running_sums_symmetric:
     case OperatorKind::running_sums_diagonal:
-      tables.sums = running_sum_tables<T>(seeing, image_rows, image_cols, chosen->images, chosen->transposed).value();
+      tables.sums = running_sum_tables<T>(seeing, chosen->images, chosen->transposed).value();
       a.sums = tables.sums.view;
       return {};
     case OperatorKind::dense_runs:
     case OperatorKind::dense_runs_bf16:
     case OperatorKind::dense_runs_int8:
-      tables.runs = dense_run_tables<T>(seeing, image_cols, run_values_of(a.kind)).value();
+      tables.runs = dense_run_tables<T>(seeing, run_values_of(a.kind)).value();
       a.runs = tables.runs.view;
       return {};
     case OperatorKind::dense:
@@ -143,14 +142,12 @@ void fill_choice(const Response& seeing, const Objective& objective, const Plan&
   core::FrameProblem<T>& problem = tables.problem;
   fill_numbers(objective, plan, problem);
   const auto values = seeing.values();
-  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
-  problem.column_norm = static_cast<T>(std::sqrt(squares / seeing.cols()));
+  problem.column_norm = static_cast<T>(std::sqrt(seeing.squared_norm() / seeing.cols()));
   const double magnitudes =
       std::accumulate(values.begin(), values.end(), 0.0, [](double sum, double v) { return sum + std::abs(v); });
   problem.mean_row_sum = static_cast<T>(magnitudes / seeing.rows());
   if (plan.solver == SolverKind::omp) {
-    const std::vector<double> norms =
-        atom_norms(seeing, static_cast<int>(problem.image_rows), static_cast<int>(problem.image_cols), objective.basis);
+    const std::vector<double> norms = atom_norms(seeing, objective.basis);
     tables.atom_norms.assign(norms.begin(), norms.end());
     problem.atom_norms = tables.atom_norms.data();
   }
@@ -208,8 +205,7 @@ hal::Result<void> fill_modes(const Response& seeing, const Objective& objective,
                              const Progress& progress, OwnedTables<T>& tables) {
   core::FrameProblem<T>& problem = tables.problem;
   const double least_square = plan.rank > 0 ? 0.0 : objective.lambda;
-  auto found = singular_modes(seeing, static_cast<int>(problem.image_rows), static_cast<int>(problem.image_cols),
-                              plan.rank, least_square, progress);
+  auto found = singular_modes(seeing, plan.rank, least_square, progress);
   if (!found) return tl::unexpected(found.error());
   tables.modes.assign(found->left.begin(), found->left.end());
   for (const double value : found->values) tables.mode_weights.push_back(static_cast<T>(1.0 / (value * value)));
@@ -227,8 +223,8 @@ template hal::Result<void> fill_modes(const Response&, const Objective&, const P
                                       OwnedTables<float>&);
 template hal::Result<void> fill_modes(const Response&, const Objective&, const Plan&, const Progress&,
                                       OwnedTables<double>&);
-template hal::Result<void> fill_operator(const Response&, int, int, std::optional<OperatorKind>, OwnedTables<float>&);
-template hal::Result<void> fill_operator(const Response&, int, int, std::optional<OperatorKind>, OwnedTables<double>&);
+template hal::Result<void> fill_operator(const Response&, std::optional<OperatorKind>, OwnedTables<float>&);
+template hal::Result<void> fill_operator(const Response&, std::optional<OperatorKind>, OwnedTables<double>&);
 template void fill_basis(BasisKind, int, int, OwnedTables<float>&);
 template void fill_basis(BasisKind, int, int, OwnedTables<double>&);
 template void fill_choice(const Response&, const Objective&, const Plan&, OwnedTables<float>&);

@@ -53,8 +53,8 @@ struct OwnedTables {
 /// A of the seeing rows in the form that choose_operator() finds, whose errors it has. For a lossy one `seeing` must be
 /// what quantised() makes of the response.
 template <class T>
-[[nodiscard]] hal::Result<void> fill_operator(const Response& seeing, int image_rows, int image_cols,
-                                              std::optional<OperatorKind> asked, OwnedTables<T>& tables);
+[[nodiscard]] hal::Result<void> fill_operator(const Response& seeing, std::optional<OperatorKind> asked,
+                                              OwnedTables<T>& tables);
 
 /// Psi and the metric that goes with it.
 template <class T>
@@ -73,7 +73,7 @@ void fill_schedule(const PenaltyLevels& levels, OwnedTables<T>& tables);
 template <class T>
 void fill_iterations(const Plan& plan, core::FrameProblem<T>& problem);
 
-/// Points problem.inverse at `values`, which are packed as Factor::inverse is.
+/// Points problem.inverse at `values`, which are packed as Factor::values are.
 template <class T>
 void fill_inverse(const ParityClasses& classes, const std::vector<T>& values, OwnedTables<T>& tables);
 

@@ -54,8 +54,9 @@ Response quantised(const Response& response, OperatorKind kind) {
     row_start.push_back(static_cast<std::int64_t>(values.size()));
   }
   // The same shape with finite values: from_csr() has nothing to refuse.
-  return std::move(*Response::from_csr(response.rows(), response.cols(), std::move(row_start), std::move(columns),
-                                       std::move(values)));
+  auto rounded =
+      Response::from_csr(response.rows(), response.cols(), std::move(row_start), std::move(columns), std::move(values));
+  return std::move(*rounded).with_image(response.image_rows(), response.image_cols()).value();
 }
 
 }  // namespace compueye::recon

@@ -11,12 +11,13 @@ namespace {
 /// One row of A, folded: visits its taps lane by lane, elements ascending.
 class SpreadRow {
  public:
-  SpreadRow(const Response& response, int image_rows, int image_cols, double negligible_share)
+  SpreadRow(const Response& response, double negligible_share)
       : response_(response),
-        rows_(image_rows),
-        cols_(image_cols),
-        half_cols_((image_cols + 1) / 2),
-        picture_(static_cast<std::size_t>(image_rows) * static_cast<std::size_t>(image_cols), 0.0) {
+        rows_(response.image_rows()),
+        cols_(response.image_cols()),
+        half_cols_((response.image_cols() + 1) / 2),
+        picture_(static_cast<std::size_t>(response.image_rows()) * static_cast<std::size_t>(response.image_cols()),
+                 0.0) {
     double largest = 0.0;
     for (const double v : response.values()) largest = std::max(largest, std::abs(v));
     negligible_ = negligible_share * largest;
@@ -132,12 +133,11 @@ int rows_sharing_tables(int image_rows, int image_cols, const MirrorSymmetry& sy
 }
 
 template <class T>
-std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, int image_rows, int image_cols,
-                                                      const MirrorSymmetry& symmetry,
+std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, const MirrorSymmetry& symmetry,
                                                       const std::vector<std::int32_t>& transposed) {
-  if (!running_sums_fit(image_rows, image_cols)) return std::nullopt;
-  const int half_rows = (image_rows + 1) / 2, half_cols = (image_cols + 1) / 2;
-  const int at_once = rows_sharing_tables(image_rows, image_cols, symmetry, transposed);
+  if (!running_sums_fit(seeing.image_rows(), seeing.image_cols())) return std::nullopt;
+  const int half_rows = (seeing.image_rows() + 1) / 2, half_cols = (seeing.image_cols() + 1) / 2;
+  const int at_once = rows_sharing_tables(seeing.image_rows(), seeing.image_cols(), symmetry, transposed);
   RunningSumTables<T> tables;
   std::vector<std::int32_t> firsts;
   if (at_once > 1) {
@@ -147,7 +147,7 @@ std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, in
   } else {
     for (std::int32_t m = 0; m < seeing.rows(); ++m) firsts.push_back(m);
   }
-  SpreadRow spread(seeing, image_rows, image_cols, 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon()));
+  SpreadRow spread(seeing, 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon()));
   std::vector<std::uint32_t> lane_first{0};
   for (const std::int32_t m : firsts) {
     for (std::size_t lane = 0; lane < 4; ++lane) {
@@ -161,8 +161,8 @@ std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, in
   tables.band_row = band_rows(tables.element, half_rows, half_cols);
   tables.first = banded(lane_first, tables.element, tables.band_row, half_cols);
   tables.view = {static_cast<std::size_t>(at_once),
-                 static_cast<std::size_t>(image_rows),
-                 static_cast<std::size_t>(image_cols),
+                 static_cast<std::size_t>(seeing.image_rows()),
+                 static_cast<std::size_t>(seeing.image_cols()),
                  firsts.size(),
                  tables.band_row.size() - 1,
                  tables.first.data(),
@@ -173,8 +173,8 @@ std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, in
   return tables;
 }
 
-std::int64_t running_sum_taps(const Response& seeing, int image_rows, int image_cols) {
-  SpreadRow spread(seeing, image_rows, image_cols, 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon()));
+std::int64_t running_sum_taps(const Response& seeing) {
+  SpreadRow spread(seeing, 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon()));
   std::int64_t taps = 0;
   for (int m = 0; m < seeing.rows(); ++m) {
     for (std::size_t lane = 0; lane < 4; ++lane) spread.for_each_tap(m, lane, [&](int, double) { ++taps; });
@@ -182,9 +182,9 @@ std::int64_t running_sum_taps(const Response& seeing, int image_rows, int image_
   return taps;
 }
 
-template std::optional<RunningSumTables<float>> running_sum_tables(const Response&, int, int, const MirrorSymmetry&,
+template std::optional<RunningSumTables<float>> running_sum_tables(const Response&, const MirrorSymmetry&,
                                                                    const std::vector<std::int32_t>&);
-template std::optional<RunningSumTables<double>> running_sum_tables(const Response&, int, int, const MirrorSymmetry&,
+template std::optional<RunningSumTables<double>> running_sum_tables(const Response&, const MirrorSymmetry&,
                                                                     const std::vector<std::int32_t>&);
 
 }  // namespace compueye::recon

@@ -38,12 +38,12 @@ struct RunningSumTables {
 /// A response as running sums, with as many rows a table as rows_sharing_tables() says. Differences below the rounding
 /// of T, relative to the largest entry, are left out. Nothing unless running_sums_fit().
 template <class T>
-[[nodiscard]] std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, int image_rows,
-                                                                    int image_cols, const MirrorSymmetry& symmetry,
+[[nodiscard]] std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing,
+                                                                    const MirrorSymmetry& symmetry,
                                                                     const std::vector<std::int32_t>& transposed = {});
 
 /// How many differences of `seeing` are not negligible: what one of its rows after the other would take as running
 /// sums, to be compared with its entries.
-[[nodiscard]] std::int64_t running_sum_taps(const Response& seeing, int image_rows, int image_cols);
+[[nodiscard]] std::int64_t running_sum_taps(const Response& seeing);
 
 }  // namespace compueye::recon

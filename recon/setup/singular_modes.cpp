@@ -59,9 +59,8 @@ hal::Result<std::vector<Mode>> chosen_modes(std::vector<Mode> modes, int rank, d
 
 }  // namespace
 
-hal::Result<ModeTable> singular_modes(const Response& seeing, int image_rows, int image_cols, int rank,
-                                      double least_square, const Progress& progress) {
-  ParityGram gram(seeing, image_rows, image_cols, MetricKind::identity);
+hal::Result<ModeTable> singular_modes(const Response& seeing, int rank, double least_square, const Progress& progress) {
+  ParityGram gram(seeing, MetricKind::identity);
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
   std::vector<Eigen::VectorXd> squares(gram.classes().count());
   const bool done = on_all_cores(static_cast<int>(gram.classes().count()), "singular values", progress, [&] {

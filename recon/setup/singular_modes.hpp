@@ -18,7 +18,7 @@ struct ModeTable {
 /// rows. Cubic in the number of rows: a quarter of a minute for 4,564 rows that are mirror symmetric, many minutes for
 /// as many that are not. Errors: interrupted; out_of_range when fewer than `rank` pairs stand above rounding, or none
 /// reaches least_square.
-[[nodiscard]] hal::Result<ModeTable> singular_modes(const Response& seeing, int image_rows, int image_cols, int rank,
-                                                    double least_square, const Progress& progress);
+[[nodiscard]] hal::Result<ModeTable> singular_modes(const Response& seeing, int rank, double least_square,
+                                                    const Progress& progress);
 
 }  // namespace compueye::recon

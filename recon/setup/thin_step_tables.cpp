@@ -92,10 +92,10 @@ void fill_lane(const Matrix& a, const std::vector<double>& penalties, std::size_
 }  // namespace
 
 template <class T>
-ThinStepTables<T> thin_step_tables(const Response& seeing, int image_rows, int image_cols, const ParityClasses& classes,
+ThinStepTables<T> thin_step_tables(const Response& seeing, const ParityClasses& classes,
                                    const std::vector<double>& penalties) {
   ThinStepTables<T> tables;
-  const bool four = folds(classes, image_rows, image_cols);
+  const bool four = folds(classes, seeing.image_rows(), seeing.image_cols());
   if (classes.count() != 1 && !four) return tables;
   const std::size_t lanes = four ? 4 : 1;
   const std::size_t rows = static_cast<std::size_t>(seeing.rows()) / lanes;
@@ -106,7 +106,7 @@ ThinStepTables<T> thin_step_tables(const Response& seeing, int image_rows, int i
   tables.rotation.assign(rows * rows * lanes, T(0));
   const Matrix a = dense(seeing);
   if (four) {
-    tables.pixel = folded_pixels(image_rows, image_cols);
+    tables.pixel = folded_pixels(seeing.image_rows(), seeing.image_cols());
     for (const ParityClasses::Orbit& orbit : classes.orbits()) {
       for (const auto& permutation : classes.symmetry().permutations) {
         tables.image.push_back(permutation[static_cast<std::size_t>(orbit.first)]);
@@ -131,9 +131,7 @@ ThinStepTables<T> thin_step_tables(const Response& seeing, int image_rows, int i
   return tables;
 }
 
-template ThinStepTables<float> thin_step_tables(const Response&, int, int, const ParityClasses&,
-                                                const std::vector<double>&);
-template ThinStepTables<double> thin_step_tables(const Response&, int, int, const ParityClasses&,
-                                                 const std::vector<double>&);
+template ThinStepTables<float> thin_step_tables(const Response&, const ParityClasses&, const std::vector<double>&);
+template ThinStepTables<double> thin_step_tables(const Response&, const ParityClasses&, const std::vector<double>&);
 
 }  // namespace compueye::recon

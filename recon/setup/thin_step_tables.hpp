@@ -29,7 +29,7 @@ struct ThinStepTables {
 /// The thin step of a small eye: empty when pixels are no multiple of 64 or A would take more than 128 KiB, where the
 /// general step is as quick. rho goes through `penalties`.
 template <class T>
-[[nodiscard]] ThinStepTables<T> thin_step_tables(const Response& seeing, int image_rows, int image_cols,
-                                                 const ParityClasses& classes, const std::vector<double>& penalties);
+[[nodiscard]] ThinStepTables<T> thin_step_tables(const Response& seeing, const ParityClasses& classes,
+                                                 const std::vector<double>& penalties);
 
 }  // namespace compueye::recon

@@ -52,9 +52,7 @@ hal::Result<CurveEyes> set_up_curve(const Board& board, const LivingResponse& li
     }
     const recon::Reconstructor& first = eyes.by_level.front();
     recon::Objective objective = first.objective();
-    objective.lambda = TRY(choose_lambda(a, board.object.rows, board.object.cols, curve.solver, curve.basis,
-                                         std::nullopt, level.sigma))
-                           .value;
+    objective.lambda = TRY(choose_lambda(a, curve.solver, curve.basis, std::nullopt, level.sigma)).value;
     recon::Plan plan = first.plan();
     // What followed from lambda follows from this one.
     plan.rho = curved.plan.rho;
@@ -63,8 +61,7 @@ hal::Result<CurveEyes> set_up_curve(const Board& board, const LivingResponse& li
     std::optional<recon::Factor> factor;
     if (recon::uses_factor(curve.solver) && curve.precision == recon::Precision::f32) factor = first.factor();
     eyes.lambda.push_back(objective.lambda);
-    eyes.by_level.push_back(TRY(recon::Reconstructor::create(a, first.image_rows(), first.image_cols(), objective, plan,
-                                                             std::move(factor), progress)));
+    eyes.by_level.push_back(TRY(recon::Reconstructor::create(a, objective, plan, std::move(factor), progress)));
   }
   return eyes;
 }

@@ -90,8 +90,8 @@ class Runner {
   [[nodiscard]] Result<double> lambda_of(const Contender& contender) const {
     const bool boards = contender.basis == board_.objective.basis && shares_objective(contender.solver);
     const std::optional<double> of_board = boards && !options_.sigma ? board_.lambda : std::nullopt;
-    return TRY(choose_lambda(response_, board_.object.rows, board_.object.cols, contender.solver, contender.basis,
-                             options_.lambda ? options_.lambda : of_board, samples_.sigma))
+    return TRY(choose_lambda(response_, contender.solver, contender.basis, options_.lambda ? options_.lambda : of_board,
+                             samples_.sigma))
         .value;
   }
 
@@ -99,17 +99,16 @@ class Runner {
     const recon::Objective objective{contender.basis, contender.constraint, board_.objective.lo, board_.objective.hi,
                                      lambda};
     const recon::Plan plan = plan_of(contender);
-    const int rows = board_.object.rows, cols = board_.object.cols;
     if (!recon::uses_factor(contender.solver)) {
-      return recon::Reconstructor::create(response_, rows, cols, objective, plan, std::nullopt, progress_);
+      return recon::Reconstructor::create(response_, objective, plan, std::nullopt, progress_);
     }
-    const recon::Factor wanted = recon::Reconstructor::wanted_factor(response_, rows, cols, objective, plan);
+    const recon::Factor wanted = recon::Reconstructor::wanted_factor(response_, objective, plan);
     for (const recon::Factor& factor : factors_) {
       if (factor.metric != wanted.metric || factor.rho != wanted.rho || factor.rank != wanted.rank) continue;
-      return recon::Reconstructor::create(response_, rows, cols, objective, plan, factor, progress_);
+      return recon::Reconstructor::create(response_, objective, plan, factor, progress_);
     }
     KeptFactor kept(board_.cache(), {hash_, wanted.rho, wanted.order, wanted.metric, wanted.rank});
-    auto made = TRY(recon::Reconstructor::create(response_, rows, cols, objective, plan, kept.take(), progress_));
+    auto made = TRY(recon::Reconstructor::create(response_, objective, plan, kept.take(), progress_));
     if (kept.origin() != FactorOrigin::kept) kept.keep(made.factor());
     notes_.insert(notes_.end(), kept.notes().begin(), kept.notes().end());
     // tikhonov's goes with its lambda, which nobody shares.
@@ -154,12 +153,11 @@ class Runner {
 };
 
 /// tsvd decomposes A A' whole: for an eye that is large and not symmetric that takes many minutes without a word.
-bool takes_too_long(const Contender& contender, const CompareOptions& options, const Board& board,
-                    const recon::Response& response) {
+bool takes_too_long(const Contender& contender, const CompareOptions& options, const recon::Response& response) {
   if (contender.solver != recon::SolverKind::tsvd || !options.solvers.empty()) return false;
   const auto rows = response.seeing_rows();
   if (static_cast<int>(rows.size()) <= most_for_whole_spectrum) return false;
-  const auto images = recon::find_mirror_symmetry(response.select_rows(rows), board.object.rows, board.object.cols);
+  const auto images = recon::find_mirror_symmetry(response.select_rows(rows));
   return rows.size() / images.order() > most_for_whole_spectrum;
 }
 
@@ -237,7 +235,7 @@ Result<Comparison> compare(const Board& board, const CompareOptions& options, co
   Runner runner(board, options, samples, clock, overall);
   std::optional<hal::Error> first_failure;
   for (const Contender& contender : all) {
-    if (takes_too_long(contender, options, board, samples.response)) {
+    if (takes_too_long(contender, options, samples.response)) {
       comparison.notes.emplace_back(
           "tsvd is left out: the whole spectrum of this eye takes many minutes; --solvers "
           "tsvd asks for it");

@@ -8,7 +8,6 @@
 
 #include "calib/nominal.hpp"
 #include "firmware/eye/conventional_eye.hpp"
-#include "firmware/eye/dead_ommatidia.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/response_file.hpp"
@@ -67,7 +66,7 @@ Result<CompareSamples> take_samples(const Board& board, const CompareOptions& o,
   recon::Response response = TRY(response_of(board, o, progress));
   std::vector<std::uint8_t> sees(static_cast<std::size_t>(board.eye.ommatidia()), 0);
   for (const std::int32_t m : response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
-  if (!board.sensor.dead.empty()) response = without_dead(response, board.sensor.dead);
+  if (!board.sensor.dead.empty()) response = response.without_rows(board.sensor.dead);
   CompareSamples samples{
       scene.name, std::move(truth), std::move(response), o.sigma.value_or(board.noise_sigma()), {}, {}, {}};
   const auto seed = static_cast<std::uint64_t>(o.seed);

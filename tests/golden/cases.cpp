@@ -94,10 +94,10 @@ hal::Result<std::vector<std::byte>> frozen(const Case& golden) {
   const auto picture = sim::render_built_in(golden.scene, rows, cols, seed);
   if (!picture) return tl::unexpected(picture.error());
   recon::Objective objective = golden.objective;
-  const auto lambda = recon::lambda_by_rule(*response, rows, cols, golden.plan.solver, objective.basis, golden.sigma);
+  const auto lambda = recon::lambda_by_rule(*response, golden.plan.solver, objective.basis, golden.sigma);
   if (!lambda) return tl::unexpected(lambda.error());
   objective.lambda = *lambda;
-  const auto solver = recon::Reconstructor::create(*response, rows, cols, objective, golden.plan);
+  const auto solver = recon::Reconstructor::create(*response, objective, golden.plan);
   if (!solver) return tl::unexpected(solver.error());
   std::vector<float> weights;
   if (golden.measured) {

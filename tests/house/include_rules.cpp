@@ -22,8 +22,8 @@ constexpr std::array<FolderRule, 26> rules{{
 
     {"recon/core", "recon/core", none, false, not_on_the_frame_path, false,
      "recon/core is the frame path: recon/core and the standard library without I/O, exceptions and heap"},
-    {"recon", "recon recon/core hal/result.hpp hal/error.hpp hal/image.hpp", "Eigen Spectra xxhash", false, none, false,
-     "recon is set-up and references: recon, hal's Result, Error and Image, Eigen, Spectra, xxhash"},
+    {"recon", "recon recon/core hal/result.hpp hal/error.hpp hal/image.hpp hal/try.hpp", "Eigen Spectra xxhash", false,
+     none, false, "recon is set-up and references: recon, hal's Result, Error and Image, Eigen, Spectra, xxhash"},
 
     {"drivers/protocol", "hal drivers/protocol", none, false, none, false,
      "drivers/protocol is a pure codec: hal and the standard library"},

@@ -35,7 +35,7 @@ std::vector<Sample> some_frames(int count) {
 
 TEST_CASE("one solver gives four threads the same bits as one, each with its own workspace") {
   Random random(62);
-  const recon::Response a = random_response(random, 60, 120, 0.12);
+  const recon::Response a = random_response(random, 60, Picture{10, 12}, 0.12);
   const std::vector<Sample> frames = some_frames(8);
   for (const auto basis : {recon::BasisKind::identity, recon::BasisKind::dct}) {
     for (const auto precision : {recon::Precision::f32, recon::Precision::f64}) {
@@ -46,7 +46,7 @@ TEST_CASE("one solver gives four threads the same bits as one, each with its own
       recon::Plan plan;
       plan.precision = precision;
       plan.iterations = 20;
-      const auto solver = recon::Reconstructor::create(a, 10, 12, objective, plan).value();
+      const auto solver = recon::Reconstructor::create(a, objective, plan).value();
       std::vector<SolvedFrame> expected;
       for (const Sample& frame : frames) expected.push_back(solve_frame(solver, frame.y, frame.weights));
 
@@ -72,9 +72,9 @@ TEST_CASE("one solver gives four threads the same bits as one, each with its own
 
 TEST_CASE("solvers set up at the same time do not disturb each other, and their factors are the same bits") {
   Random random(63);
-  const recon::Response a = random_response(random, 60, 120, 0.3);
+  const recon::Response a = random_response(random, 60, Picture{10, 12}, 0.3);
   const auto make = [&a] {
-    return recon::packed_inverse<float>(a, 10, 12, recon::MetricKind::identity, 0.5,
+    return recon::packed_inverse<float>(a, recon::MetricKind::identity, 0.5,
                                         [](std::string_view, double, double) { return true; })
         .value();
   };

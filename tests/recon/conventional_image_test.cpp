@@ -65,7 +65,7 @@ TEST_CASE("every pixel shows the nearest seeing ommatidium") {
     if (grid == 1) {
       eye = Response::from_dense(1, 16, std::vector<double>(16, 0.5)).value();
     }
-    const auto image = ConventionalImage::create(eye, side, side).value();
+    const auto image = ConventionalImage::create(eye).value();
     REQUIRE(image.source_rows().size() == static_cast<std::size_t>(side * side));
     int wrong = 0;
     for (int r = 0; r < side; ++r) {
@@ -80,7 +80,7 @@ TEST_CASE("every pixel shows the nearest seeing ommatidium") {
 
 TEST_CASE("a white scene is shown white and a brighter or darker one is clipped") {
   const Response eye = narrow_eye(8, 16);
-  const auto image = ConventionalImage::create(eye, 16, 16).value();
+  const auto image = ConventionalImage::create(eye).value();
   std::vector<double> y_exact(64);
   eye.forward(std::vector<double>(256, 1.0), y_exact);
   std::vector<float> y(y_exact.begin(), y_exact.end()), picture(256);
@@ -98,8 +98,8 @@ TEST_CASE("a white scene is shown white and a brighter or darker one is clipped"
 }
 
 TEST_CASE("a sample that is NaN shows black where its ommatidium looks") {
-  const auto eye = Response::from_dense(2, 4, {1, 1, 0, 0, 0, 0, 1, 1}).value();
-  const auto image = ConventionalImage::create(eye, 1, 4).value();
+  const auto eye = Response::from_dense(2, 4, {1, 1, 0, 0, 0, 0, 1, 1}).value().with_image(1, 4).value();
+  const auto image = ConventionalImage::create(eye).value();
   std::vector<float> picture(4, -1.0F);
   image.render(std::vector<float>{std::numeric_limits<float>::quiet_NaN(), 1.0F}, picture);
   CHECK(picture == std::vector<float>{0.0F, 0.0F, 0.5F, 0.5F});
@@ -109,21 +109,21 @@ TEST_CASE("a sample that is NaN shows black where its ommatidium looks") {
 }
 
 TEST_CASE("equally near ommatidia: the first one is shown") {
-  const auto eye = Response::from_dense(3, 3, {0, 0, 0, 1, 0, 0, 0, 0, 1}).value();
-  const auto image = ConventionalImage::create(eye, 1, 3).value();
+  const auto eye = Response::from_dense(3, 3, {0, 0, 0, 1, 0, 0, 0, 0, 1}).value().with_image(1, 3).value();
+  const auto image = ConventionalImage::create(eye).value();
   CHECK(std::vector<std::int32_t>(image.source_rows().begin(), image.source_rows().end()) ==
         std::vector<std::int32_t>{1, 1, 2});
-  const auto twins = Response::from_dense(2, 2, {1, 1, 1, 1}).value();
-  const auto both = ConventionalImage::create(twins, 2, 1).value();
+  const auto twins = Response::from_dense(2, 2, {1, 1, 1, 1}).value().with_image(2, 1).value();
+  const auto both = ConventionalImage::create(twins).value();
   CHECK(both.source_rows()[0] == 0);
   CHECK(both.source_rows()[1] == 0);
 }
 
 TEST_CASE("a conventional eye that cannot be one is refused") {
   const auto eye = Response::from_dense(1, 6, std::vector<double>(6, 1.0)).value();
-  CHECK(ConventionalImage::create(eye, 2, 2).error().code == hal::ErrorCode::mismatch);
-  CHECK(ConventionalImage::create(eye, 0, 6).error().code == hal::ErrorCode::mismatch);
-  CHECK(ConventionalImage::create(eye, -2, -3).error().code == hal::ErrorCode::mismatch);
-  const auto blind = Response::from_dense(2, 2, {0, 0, -1, 0.5}).value();
-  CHECK(ConventionalImage::create(blind, 1, 2).error().code == hal::ErrorCode::out_of_range);
+  CHECK(eye.with_image(2, 2).error().code == hal::ErrorCode::mismatch);
+  CHECK(eye.with_image(0, 6).error().code == hal::ErrorCode::mismatch);
+  CHECK(eye.with_image(-2, -3).error().code == hal::ErrorCode::mismatch);
+  const auto blind = Response::from_dense(2, 2, {0, 0, -1, 0.5}).value().with_image(1, 2).value();
+  CHECK(ConventionalImage::create(blind).error().code == hal::ErrorCode::out_of_range);
 }

@@ -24,7 +24,6 @@ namespace {
 struct Measured {
   std::string name;
   Response a;
-  int rows, cols;
 };
 
 Response measured_rows(int side, double interommatidial_deg, double acceptance_deg, const hal::ObjectPlane& plane) {
@@ -49,12 +48,12 @@ Response with_zero_rows(Random& random, int rows, int cols) {
 std::vector<Measured> matrices() {
   Random random(81);
   std::vector<Measured> all;
-  all.push_back({"small eye", measured_rows(8, 1.5, 8.0, {16, 16, 8, 8, 30}), 16, 16});
-  all.push_back({"large picture", measured_rows(11, 10.0, 60.0, {100, 97, 60, 60, 10}), 100, 97});
-  all.push_back({"one group", random_response(random, 5, 16, 1.0), 4, 4});
-  all.push_back({"a group and a pixel", random_response(random, 6, 17, 1.0), 1, 17});
-  all.push_back({"sparse", random_response(random, 33, 300, 0.03), 15, 20});
-  all.push_back({"zero rows", with_zero_rows(random, 10, 70), 7, 10});
+  all.push_back({"small eye", measured_rows(8, 1.5, 8.0, {16, 16, 8, 8, 30})});
+  all.push_back({"large picture", measured_rows(11, 10.0, 60.0, {100, 97, 60, 60, 10})});
+  all.push_back({"one group", random_response(random, 5, Picture{4, 4}, 1.0)});
+  all.push_back({"a group and a pixel", random_response(random, 6, Picture{1, 17}, 1.0)});
+  all.push_back({"sparse", random_response(random, 33, Picture{15, 20}, 0.03)});
+  all.push_back({"zero rows", with_zero_rows(random, 10, 70).with_image(7, 10).value()});
   return all;
 }
 
@@ -80,7 +79,7 @@ void check_against_double(const Measured& measured, OperatorKind kind) {
   Random random(82);
   const Response a = recon::quantised(measured.a, kind);
   recon::OwnedTables<T> tables;
-  REQUIRE(recon::fill_operator(a, measured.rows, measured.cols, kind, tables).has_value());
+  REQUIRE(recon::fill_operator(a, kind, tables).has_value());
   const auto& op = tables.problem.a;
   CHECK(op.kind == kind);
   CHECK(op.scratch_size() == 0);
@@ -119,9 +118,9 @@ void check_against_double(const Measured& measured, OperatorKind kind) {
   CHECK(std::abs(forward_dot - adjoint_dot) <= allowed_dot + 1e-14);
 }
 
-OperatorKind chosen(const Response& a, int rows, int cols) {
+OperatorKind chosen(const Response& a) {
   recon::OwnedTables<float> tables;
-  REQUIRE(recon::fill_operator(a, rows, cols, std::nullopt, tables).has_value());
+  REQUIRE(recon::fill_operator(a, std::nullopt, tables).has_value());
   return tables.problem.a.kind;
 }
 
@@ -145,7 +144,7 @@ TEST_CASE("a sum of dense runs has the order that is written down, to the bit") 
   for (int k = 0; k < 5 * 50; ++k) values.push_back(random.below(127) - 63.0);
   values[0] = 127.0;
   for (std::size_t m = 0; m < 5; ++m) values[50 * m] = 127.0;  // a scale of one
-  const Response a = Response::from_dense(5, 50, values).value();
+  const Response a = Response::from_dense(5, 50, values).value().with_image(5, 10).value();
   std::vector<float> x;
   for (int n = 0; n < 50; ++n)
     x.push_back(static_cast<float>(random.below(1 << 14)) * 0x1p-30F + (n % 7 == 0 ? 1.0F : 0.0F));
@@ -162,7 +161,7 @@ TEST_CASE("a sum of dense runs has the order that is written down, to the bit") 
   }
   for (const OperatorKind kind : kinds) {
     recon::OwnedTables<float> tables;
-    REQUIRE(recon::fill_operator(recon::quantised(a, kind), 5, 10, kind, tables).has_value());
+    REQUIRE(recon::fill_operator(recon::quantised(a, kind), kind, tables).has_value());
     float y[5];
     recon::core::forward(tables.problem.a, x.data(), y, nullptr);
     for (std::size_t m = 0; m < 5; ++m) CHECK(y[m] == expected[m]);
@@ -171,16 +170,16 @@ TEST_CASE("a sum of dense runs has the order that is written down, to the bit") 
 
 TEST_CASE("tables of dense runs take exactly the bytes of their values, runs and bands") {
   Random random(84);
-  const Response a = random_response(random, 6, 64, 1.0);
+  const Response a = random_response(random, 6, Picture{8, 8}, 1.0);
   for (const auto& [stored, bytes] : {std::pair{recon::core::RunValues::full, 4U},
                                       {recon::core::RunValues::bf16, 2U},
                                       {recon::core::RunValues::int8, 1U}}) {
-    const auto tables = recon::dense_run_tables<float>(a, 8, stored).value();
+    const auto tables = recon::dense_run_tables<float>(a, stored).value();
     // Two blocks of four rows, each one run of four groups; one band.
     const std::size_t scales = stored == recon::core::RunValues::int8 ? 8 * 4 : 0;
     CHECK(tables.bytes() == 2 * 4 * 64 * bytes + 2 * (4 + 2) + 2 * (3 * 4) + 8 * 4 + scales);
     CHECK(recon::core::flops(tables.view) == 2 * 4 * 64);
-    CHECK(recon::dense_run_values(a, 8) == 2 * 4 * 64);
+    CHECK(recon::dense_run_values(a) == 2 * 4 * 64);
   }
 }
 
@@ -224,10 +223,12 @@ TEST_CASE("a pixel that is not finite spoils the rows that see it") {
                                             v[64 + 50] = 1.0;
                                             return v;
                                           }())
+                         .value()
+                         .with_image(8, 8)
                          .value();
   for (const OperatorKind kind : kinds) {
     recon::OwnedTables<float> tables;
-    REQUIRE(recon::fill_operator(a, 8, 8, kind, tables).has_value());
+    REQUIRE(recon::fill_operator(a, kind, tables).has_value());
     std::vector<float> x(64, 1.0F), y(2);
     x[50] = std::nanf("");
     recon::core::forward(tables.problem.a, x.data(), y.data(), nullptr);
@@ -236,10 +237,10 @@ TEST_CASE("a pixel that is not finite spoils the rows that see it") {
 }
 
 TEST_CASE("measured rows are applied as dense runs, flat and dense ones are not") {
-  CHECK(chosen(measured_rows(24, 4.5, 60.0, {96, 96, 60, 60, 10}), 96, 96) == OperatorKind::dense_runs);
+  CHECK(chosen(measured_rows(24, 4.5, 60.0, {96, 96, 60, 60, 10})) == OperatorKind::dense_runs);
   Random random(86);
-  CHECK(chosen(random_response(random, 20, 256, 1.0), 16, 16) == OperatorKind::dense);
-  CHECK(chosen(random_response(random, 20, 256, 0.05), 16, 16) == OperatorKind::csr);
+  CHECK(chosen(random_response(random, 20, Picture{16, 16}, 1.0)) == OperatorKind::dense);
+  CHECK(chosen(random_response(random, 20, Picture{16, 16}, 0.05)) == OperatorKind::csr);
 }
 
 TEST_CASE("an operator that the response does not fit is refused in a sentence that names others") {
@@ -248,19 +249,19 @@ TEST_CASE("an operator that the response does not fit is refused in a sentence t
   objective.lambda = 0.1;
   recon::Plan plan;
   plan.op = OperatorKind::running_sums;
-  const auto sums = recon::Reconstructor::create(measured, 16, 16, objective, plan);
+  const auto sums = recon::Reconstructor::create(measured, objective, plan);
   REQUIRE_FALSE(sums.has_value());
   CHECK(sums.error().code == hal::ErrorCode::unsupported);
   CHECK(sums.error().place == "operator");
   CHECK(sums.error().sentence.find("expected dense-runs") != std::string::npos);
   Random random(87);
   plan.op = OperatorKind::dense_runs_int8;
-  const auto tiny = recon::Reconstructor::create(random_response(random, 4, 12, 1.0), 3, 4, objective, plan);
+  const auto tiny = recon::Reconstructor::create(random_response(random, 4, Picture{3, 4}, 1.0), objective, plan);
   REQUIRE_FALSE(tiny.has_value());
   CHECK(tiny.error().sentence.find("16 pixels") != std::string::npos);
   for (const OperatorKind kind : {OperatorKind::dense, OperatorKind::csr, OperatorKind::dense_runs}) {
     plan.op = kind;
-    const auto made = recon::Reconstructor::create(measured, 16, 16, objective, plan);
+    const auto made = recon::Reconstructor::create(measured, objective, plan);
     REQUIRE(made.has_value());
     CHECK(made->operating_point().op == kind);
   }

@@ -32,7 +32,10 @@ recon::Response lattice_response(int grid_rows, int grid_cols, int image_rows, i
       }
     }
   }
-  return recon::Response::from_dense(grid_rows * grid_cols, image_rows * image_cols, values).value();
+  return recon::Response::from_dense(grid_rows * grid_cols, image_rows * image_cols, values)
+      .value()
+      .with_image(image_rows, image_cols)
+      .value();
 }
 
 Eigen::MatrixXd direct_inverse(const recon::Response& a, double rho) {
@@ -42,11 +45,11 @@ Eigen::MatrixXd direct_inverse(const recon::Response& a, double rho) {
   return gram.fullPivLu().inverse();
 }
 
-void check_against_direct(const recon::Response& a, int rows, int cols, double rho) {
-  const auto packed = recon::packed_inverse<double>(a, rows, cols, recon::MetricKind::identity, rho, {});
+void check_against_direct(const recon::Response& a, double rho) {
+  const auto packed = recon::packed_inverse<double>(a, recon::MetricKind::identity, rho, {});
   REQUIRE(packed.has_value());
   const Eigen::MatrixXd expected = direct_inverse(a, rho);
-  const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a, rows, cols));
+  const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a));
   CHECK(packed->size() == recon::factor_size(classes));
   recon::OwnedTables<double> tables;
   recon::fill_inverse(classes, *packed, tables);
@@ -77,29 +80,29 @@ TEST_CASE("the inverse of a symmetric eye, taken class by class, equals the dire
     CAPTURE(gr);
     CAPTURE(gc);
     const recon::Response a = lattice_response(gr, gc, ir, ic, 0.0);
-    CHECK(recon::find_mirror_symmetry(a, ir, ic).order() == 4);
-    check_against_direct(a, ir, ic, 0.05);
+    CHECK(recon::find_mirror_symmetry(a).order() == 4);
+    check_against_direct(a, 0.05);
   }
 }
 
 TEST_CASE("an eye with one mirror axis or none is recognised as such") {
   const recon::Response skewed = lattice_response(4, 6, 9, 12, 0.3);
-  CHECK(recon::find_mirror_symmetry(skewed, 9, 12).order() == 2);
-  check_against_direct(skewed, 9, 12, 0.02);
+  CHECK(recon::find_mirror_symmetry(skewed).order() == 2);
+  check_against_direct(skewed, 0.02);
   Random random(41);
-  const recon::Response any = random_response(random, 23, 40, 0.5);
-  CHECK(recon::find_mirror_symmetry(any, 5, 8).order() == 1);
-  check_against_direct(any, 5, 8, 0.1);
+  const recon::Response any = random_response(random, 23, Picture{5, 8}, 0.5);
+  CHECK(recon::find_mirror_symmetry(any).order() == 1);
+  check_against_direct(any, 0.1);
 }
 
 TEST_CASE("set-up can be interrupted and reports its progress") {
   const recon::Response a = lattice_response(4, 4, 8, 8, 0.0);
-  const auto stopped = recon::packed_inverse<float>(a, 8, 8, recon::MetricKind::identity, 0.1,
+  const auto stopped = recon::packed_inverse<float>(a, recon::MetricKind::identity, 0.1,
                                                     [](std::string_view, double, double) { return false; });
   REQUIRE_FALSE(stopped.has_value());
   CHECK(stopped.error().code == hal::ErrorCode::interrupted);
   double last = 0.0;
-  const auto made = recon::packed_inverse<float>(a, 8, 8, recon::MetricKind::identity, 0.1,
+  const auto made = recon::packed_inverse<float>(a, recon::MetricKind::identity, 0.1,
                                                  [&](std::string_view, double done, double total) {
                                                    CHECK(done <= total);
                                                    last = done / total;

@@ -34,10 +34,10 @@ recon::Response nominal(int side, double acceptance_deg, const hal::ObjectPlane&
 /// Every form of A: running sums with symmetry and without, dense, sparse.
 std::vector<SolverProblem> problems() {
   std::vector<SolverProblem> all;
-  all.push_back({"four mirrored rows", nominal(8, 8.0, {16, 16, 8.0, 8.0, 30.0}), 16, 16});
-  all.push_back({"an odd side", nominal(12, 40.0, {41, 44, 20.0, 20.0, 30.0}), 41, 44});
+  all.push_back({"four mirrored rows", nominal(8, 8.0, {16, 16, 8.0, 8.0, 30.0})});
+  all.push_back({"an odd side", nominal(12, 40.0, {41, 44, 20.0, 20.0, 30.0})});
   Random random(72);
-  all.push_back({"few entries", random_response(random, 12, 100, 0.05), 10, 10});
+  all.push_back({"few entries", random_response(random, 12, Picture{10, 10}, 0.05)});
   for (SolverProblem& each : solver_problems()) {
     if (each.name == "dense wide" || each.name == "sparse wide" || each.name == "zero rows") all.push_back(each);
   }
@@ -81,7 +81,7 @@ recon::Reconstructor small_solver() {
   recon::Plan plan;
   plan.iterations = 5;
   const SolverProblem problem = problems().front();
-  return recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan).value();
+  return recon::Reconstructor::create(problem.a, objective, plan).value();
 }
 
 }  // namespace
@@ -94,8 +94,7 @@ TEST_CASE("every setting gives the same bits again from its frozen bytes alone")
       if (setting.plan.precision != recon::Precision::f32) continue;
       CAPTURE(problem.name);
       CAPTURE(setting.name);
-      const auto solver =
-          recon::Reconstructor::create(problem.a, problem.rows, problem.cols, setting.objective, setting.plan);
+      const auto solver = recon::Reconstructor::create(problem.a, setting.objective, setting.plan);
       REQUIRE(solver);
       Copy copy(frozen(*solver, sample_for(*solver)));
       REQUIRE(copy.thaw() == recon::core::Thawed::ready);
@@ -120,7 +119,7 @@ TEST_CASE("numbers without an end survive freezing") {
   recon::Objective objective;
   objective.constraint = recon::ConstraintKind::nonnegative;
   const SolverProblem problem = problems().front();
-  const auto solver = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, {}).value();
+  const auto solver = recon::Reconstructor::create(problem.a, objective, {}).value();
   Copy copy(frozen(solver, sample_for(solver)));
   REQUIRE(copy.thaw() == recon::core::Thawed::ready);
   CHECK(copy.frame.problem.lo == 0.0F);

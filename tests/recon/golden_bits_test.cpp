@@ -44,8 +44,9 @@ std::uint64_t golden_frame(recon::BasisKind basis, recon::ConstraintKind constra
   plan.solver = kind;
   plan.iterations = 40;
   plan.rho = 0.5;
-  const auto solver =
-      recon::Reconstructor::create(golden_response(64, rows * cols, share), rows, cols, objective, plan).value();
+  const auto solver = recon::Reconstructor::create(
+                          golden_response(64, rows * cols, share).with_image(rows, cols).value(), objective, plan)
+                          .value();
   std::vector<float> y(64), weights(64, 1.0F);
   for (std::size_t m = 0; m < 64; ++m) y[m] = static_cast<float>((m * 37) % 64) / 8.0F;
   weights[10] = 0.0F;

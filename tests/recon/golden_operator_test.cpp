@@ -54,7 +54,7 @@ Response rectangles(bool uneven) {
       }
     }
   }
-  return Response::from_dense(40, side * side, std::move(values)).value();
+  return Response::from_dense(40, side * side, std::move(values)).value().with_image(side, side).value();
 }
 
 std::uint64_t golden(const recon::core::LinearOperator<float>& op) {
@@ -70,18 +70,17 @@ std::uint64_t golden(const recon::core::LinearOperator<float>& op) {
 
 std::uint64_t golden_of(const Response& a, OperatorKind kind) {
   recon::OwnedTables<float> tables;
-  REQUIRE(recon::fill_operator(recon::quantised(a, kind), side, side, kind, tables).has_value());
+  REQUIRE(recon::fill_operator(recon::quantised(a, kind), kind, tables).has_value());
   return golden(tables.problem.a);
 }
 
 std::uint64_t golden_sums(const Response& a, int rows_at_once) {
-  recon::MirrorSymmetry images = recon::find_mirror_symmetry(a, side, side);
+  recon::MirrorSymmetry images = recon::find_mirror_symmetry(a);
   REQUIRE(images.order() == 4);
   if (rows_at_once == 1) images = {{images.permutations.front()}, {{1}}};
-  const auto transposed =
-      rows_at_once == 8 ? recon::find_diagonal_symmetry(a, side, side) : std::vector<std::int32_t>{};
+  const auto transposed = rows_at_once == 8 ? recon::find_diagonal_symmetry(a) : std::vector<std::int32_t>{};
   recon::OwnedTables<float> tables;
-  tables.sums = recon::running_sum_tables<float>(a, side, side, images, transposed).value();
+  tables.sums = recon::running_sum_tables<float>(a, images, transposed).value();
   CHECK(tables.sums.view.rows_at_once == static_cast<std::size_t>(rows_at_once));
   auto& op = tables.problem.a;
   op.kind = OperatorKind::running_sums;

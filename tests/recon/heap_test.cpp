@@ -15,7 +15,7 @@ TEST_CASE("solving a frame does not touch the heap, for any solver, basis, const
   Random random(64);
   int solved = 0;
   for (const double density : {0.08, 0.6}) {  // csr and dense operators
-    const recon::Response a = random_response(random, 40, 130, density);
+    const recon::Response a = random_response(random, 40, Picture{10, 13}, density);
     const auto y = to_float(random_vector(random, 40, 0.0, 4.0));
     std::vector<float> weights(40, 1.0F), bad = y, x(130);
     weights[2] = weights[11] = weights[39] = 0.0F;
@@ -23,7 +23,7 @@ TEST_CASE("solving a frame does not touch the heap, for any solver, basis, const
     bad[7] = std::nanf("");
     for (const SolverSetting& setting : every_setting()) {
       CAPTURE(setting.name);
-      const auto solver = recon::Reconstructor::create(a, 10, 13, setting.objective, setting.plan).value();
+      const auto solver = recon::Reconstructor::create(a, setting.objective, setting.plan).value();
       const recon::AlignedWorkspace workspace(solver.required_bytes());
       const HeapUse before = heap_use_of_this_thread();
       const auto whole = solver.solve(y, {}, workspace.span(), x);

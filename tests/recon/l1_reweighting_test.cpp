@@ -27,7 +27,7 @@ struct SparseProblem {
 
 SparseProblem sparse_problem(std::uint64_t seed, double sigma) {
   Random random(seed);
-  SparseProblem p{random_response(random, 40, pixels, 0.4), std::vector<double>(pixels, 0.0), {}};
+  SparseProblem p{random_response(random, 40, Picture{1, pixels}, 0.4), std::vector<double>(pixels, 0.0), {}};
   for (int dot = 0; dot < 5; ++dot) p.truth[static_cast<std::size_t>(random.below(pixels))] = random.uniform(0.5, 1.0);
   std::vector<double> samples(40);
   p.a.forward(p.truth, samples);
@@ -44,7 +44,7 @@ Objective objective_of(double lambda) {
 }
 
 SolvedFrame solved(const SparseProblem& p, const Objective& objective, const Plan& plan) {
-  const auto solver = Reconstructor::create(p.a, 1, pixels, objective, plan);
+  const auto solver = Reconstructor::create(p.a, objective, plan);
   REQUIRE(solver.has_value());
   return solve_frame(*solver, p.y);
 }
@@ -104,7 +104,7 @@ TEST_CASE("l1 reweighting starts every frame afresh, and reports no gap") {
   Plan plan;
   plan.l1_reweighting = e;
   plan.measure_gap = true;
-  const auto solver = Reconstructor::create(p.a, 1, pixels, objective_of(0.1), plan);
+  const auto solver = Reconstructor::create(p.a, objective_of(0.1), plan);
   REQUIRE(solver.has_value());
   const recon::AlignedWorkspace workspace(solver->required_bytes());
   std::vector<float> x(pixels), again(pixels);
@@ -122,7 +122,7 @@ TEST_CASE("l1 reweighting is for admm in pixels, by a brightness") {
     Plan plan;
     plan.solver = kind;
     plan.l1_reweighting = near;
-    const auto solver = Reconstructor::create(p.a, 1, pixels, objective, plan);
+    const auto solver = Reconstructor::create(p.a, objective, plan);
     REQUIRE_FALSE(solver.has_value());
     CHECK(solver.error().code == code);
     CHECK(solver.error().text().find("reweighting") != std::string::npos);

@@ -23,13 +23,13 @@ Response scaled(const Response& a, double factor) {
 }
 
 double rule(const Response& a, BasisKind basis, double sigma, SolverKind solver = SolverKind::admm) {
-  return lambda_by_rule(a, 1, a.cols(), solver, basis, sigma).value();
+  return lambda_by_rule(a, solver, basis, sigma).value();
 }
 
 }  // namespace
 
 TEST_CASE("the rule's scales are a median column norm and a mean column sum") {
-  const auto a = Response::from_dense(2, 3, {3.0, 0.0, 1.0, 4.0, 2.0, 0.0}).value();
+  const auto a = Response::from_dense(2, 3, {3.0, 0.0, 1.0, 4.0, 2.0, 0.0}).value().with_image(1, 3).value();
   CHECK(lambda_scale(a, BasisKind::identity) == doctest::Approx(2.0));
   for (const BasisKind basis : {BasisKind::dct, BasisKind::haar, BasisKind::db4, BasisKind::dft, BasisKind::tv}) {
     CHECK(lambda_scale(a, basis) == doctest::Approx(10.0 / 3.0));
@@ -44,7 +44,7 @@ TEST_CASE("the rule's scales are a median column norm and a mean column sum") {
 
 TEST_CASE("lambda follows the unit of the samples as the objective does") {
   Random random(1);
-  const Response a = random_response(random, 30, 40, 0.4);
+  const Response a = random_response(random, 30, Picture{1, 40}, 0.4);
   for (const BasisKind basis : {BasisKind::identity, BasisKind::dct, BasisKind::tv}) {
     for (const double sigma : {0.0, 0.01}) {
       CHECK(rule(scaled(a, 8.0), basis, 8.0 * sigma) == doctest::Approx(64.0 * rule(a, basis, sigma)));
@@ -55,10 +55,10 @@ TEST_CASE("lambda follows the unit of the samples as the objective does") {
 }
 
 TEST_CASE("the rule refuses a sigma that is none, and survives an eye that sees nothing") {
-  const auto blind = Response::from_csr(2, 3, {0, 0, 0}, {}, {}).value();
+  const auto blind = Response::from_csr(2, 3, {0, 0, 0}, {}, {}).value().with_image(1, 3).value();
   CHECK(rule(blind, BasisKind::dct, 0.1) > 0.0);
   for (const double sigma : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
-    const auto lambda = lambda_by_rule(blind, 1, 3, SolverKind::admm, BasisKind::dct, sigma);
+    const auto lambda = lambda_by_rule(blind, SolverKind::admm, BasisKind::dct, sigma);
     REQUIRE_FALSE(lambda.has_value());
     CHECK(lambda.error().code == hal::ErrorCode::out_of_range);
   }

@@ -32,7 +32,7 @@ struct Frame {
 /// 40 channels on an 8 x 10 picture, with noise.
 Frame noisy_frame() {
   Random random(51);
-  Frame frame{random_response(random, 40, 80, 0.3), std::vector<double>(40)};
+  Frame frame{random_response(random, 40, Picture{8, 10}, 0.3), std::vector<double>(40)};
   std::vector<double> truth(80, 0.0);
   for (double& v : truth) v = random.uniform() < 0.3 ? random.uniform(0.2, 1.0) : 0.0;
   frame.a.forward(truth, frame.y);
@@ -48,7 +48,7 @@ Frame with_repeated_rows(const Frame& frame, int distinct) {
     frame.a.for_each_in_row(m % distinct, [&](std::int32_t n, double v) { row[static_cast<std::size_t>(n)] = v; });
     values.insert(values.end(), row.begin(), row.end());
   }
-  return {Response::from_dense(40, 80, std::move(values)).value(), frame.y};
+  return {Response::from_dense(40, 80, std::move(values)).value().with_image(8, 10).value(), frame.y};
 }
 
 Response scaled(const Response& a, double scale) {
@@ -86,8 +86,7 @@ TEST_CASE("the unit of A and of x does not matter: the picture follows it") {
   for (const auto basis : {BasisKind::identity, BasisKind::dct}) {
     Plan plan;
     plan.iterations = 300;
-    const auto plain =
-        Reconstructor::create(frame.a, 8, 10, make_objective(basis, ConstraintKind::box, 0.05), plan).value();
+    const auto plain = Reconstructor::create(frame.a, make_objective(basis, ConstraintKind::box, 0.05), plan).value();
     const SolvedFrame expected = solve_frame(plain, scaled(frame.y, 1.0), weights);
     REQUIRE(expected.info.health == Health::converged);
     for (const double unit_of_a : {1e-9, 1e-6, 1e-3, 1e4, 1e6, 1e9}) {
@@ -96,7 +95,7 @@ TEST_CASE("the unit of A and of x does not matter: the picture follows it") {
         CAPTURE(unit_of_x);
         const Objective objective =
             make_objective(basis, ConstraintKind::box, 0.05 * unit_of_a * unit_of_a * unit_of_x, unit_of_x);
-        const auto solver = Reconstructor::create(scaled(frame.a, unit_of_a), 8, 10, objective, plan);
+        const auto solver = Reconstructor::create(scaled(frame.a, unit_of_a), objective, plan);
         REQUIRE(solver.has_value());
         SolvedFrame solved = solve_frame(*solver, scaled(frame.y, unit_of_a * unit_of_x), weights);
         for (float& v : solved.x) v = static_cast<float>(static_cast<double>(v) / unit_of_x);
@@ -113,8 +112,8 @@ TEST_CASE("the unit of A and of x does not matter: the picture follows it") {
 TEST_CASE("a scaling by a power of two changes no bit of the picture") {
   const Frame frame = noisy_frame();
   const auto plain =
-      Reconstructor::create(frame.a, 8, 10, make_objective(BasisKind::dct, ConstraintKind::box, 0.05), {}).value();
-  const auto larger = Reconstructor::create(scaled(frame.a, 0x1p20), 8, 10,
+      Reconstructor::create(frame.a, make_objective(BasisKind::dct, ConstraintKind::box, 0.05), {}).value();
+  const auto larger = Reconstructor::create(scaled(frame.a, 0x1p20),
                                             make_objective(BasisKind::dct, ConstraintKind::box, 0.05 * 0x1p40), {});
   REQUIRE(larger.has_value());
   CHECK(solve_frame(plain, scaled(frame.y, 1.0)).x == solve_frame(*larger, scaled(frame.y, 0x1p20)).x);
@@ -124,7 +123,7 @@ TEST_CASE("a response in a unit that float32 cannot square is refused, not shown
   const Frame frame = noisy_frame();
   for (const double unit : {1e-300, 1e-30, 1e-15, 1e15, 1e30, 1e200}) {
     CAPTURE(unit);
-    const auto made = Reconstructor::create(scaled(frame.a, unit), 8, 10, Objective{}, {});
+    const auto made = Reconstructor::create(scaled(frame.a, unit), Objective{}, {});
     REQUIRE_FALSE(made.has_value());
     CHECK(made.error().code == ErrorCode::out_of_range);
     CHECK(made.error().sentence.find("another unit") != std::string::npos);
@@ -137,7 +136,7 @@ TEST_CASE("converged means close to the optimum, whatever rho is") {
   for (const Frame& frame : {noisy, with_repeated_rows(noisy, 25)}) {
     const Objective objective = make_objective(BasisKind::dct, ConstraintKind::box, 0.05);
     std::vector<double> y = to_double(scaled(frame.y, 1.0));
-    const auto best = recon::reference::solve_reference(frame.a, 8, 10, objective, y);
+    const auto best = recon::reference::solve_reference(frame.a, objective, y);
     REQUIRE(best.converged);
     for (const auto precision : {Precision::f32, Precision::f64}) {
       for (const double rho : {1e-40, 1e-14, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 1e3, 1e5, 1e12, 1e40}) {
@@ -147,7 +146,7 @@ TEST_CASE("converged means close to the optimum, whatever rho is") {
         plan.precision = precision;
         plan.rho = rho;
         plan.iterations = 2000;
-        const auto solver = Reconstructor::create(frame.a, 8, 10, objective, plan);
+        const auto solver = Reconstructor::create(frame.a, objective, plan);
         if (!solver) {
           CHECK(solver.error().code == ErrorCode::out_of_range);
           CHECK((rho < 1e-3 || rho > 1e5));
@@ -159,7 +158,7 @@ TEST_CASE("converged means close to the optimum, whatever rho is") {
         CHECK(std::all_of(solved.x.begin(), solved.x.end(), [](float v) { return v >= 0.0F && v <= 1.0F; }));
         if (solved.info.health != Health::converged) continue;
         ++converged;
-        const double reached = recon::reference::objective_value(frame.a, 8, 10, objective, y, {}, to_double(solved.x));
+        const double reached = recon::reference::objective_value(frame.a, objective, y, {}, to_double(solved.x));
         CHECK(reached <= best.objective * 1.01);
       }
     }
@@ -172,30 +171,30 @@ TEST_CASE("a rho too small for float32 is refused where A A' is singular, and do
   const Frame frame = with_repeated_rows(noisy_frame(), 25);
   Plan plan;
   plan.rho = 1e-6;
-  const auto single = Reconstructor::create(frame.a, 8, 10, Objective{}, plan);
+  const auto single = Reconstructor::create(frame.a, Objective{}, plan);
   REQUIRE_FALSE(single.has_value());
   CHECK(single.error().sentence.find("double precision") != std::string::npos);
   plan.precision = Precision::f64;
-  CHECK(Reconstructor::create(frame.a, 8, 10, Objective{}, plan).has_value());
+  CHECK(Reconstructor::create(frame.a, Objective{}, plan).has_value());
   Objective objective;
   objective.lambda = 1e-6;
   Plan tikhonov;
   tikhonov.solver = recon::SolverKind::tikhonov;
-  CHECK_FALSE(Reconstructor::create(frame.a, 8, 10, objective, tikhonov).has_value());
+  CHECK_FALSE(Reconstructor::create(frame.a, objective, tikhonov).has_value());
 }
 
 TEST_CASE("one pixel and one row have their closed forms") {
   // min 1/2 (2 x - 3)^2 + |x| / 2: x = (6 - 1/2) / 4.
-  const Response one = Response::from_dense(1, 1, {2.0}).value();
+  const Response one = Response::from_dense(1, 1, {2.0}).value().with_image(1, 1).value();
   for (const auto basis : {BasisKind::identity, BasisKind::dct}) {
     for (const auto precision : {Precision::f32, Precision::f64}) {
       Plan plan;
       plan.precision = precision;
       plan.iterations = 500;
-      const auto free = Reconstructor::create(one, 1, 1, make_objective(basis, ConstraintKind::none, 0.5), plan);
+      const auto free = Reconstructor::create(one, make_objective(basis, ConstraintKind::none, 0.5), plan);
       REQUIRE(free.has_value());
       CHECK(solve_frame(*free, {3.0F}).x[0] == doctest::Approx(1.375).epsilon(1e-5));
-      const auto box = Reconstructor::create(one, 1, 1, make_objective(basis, ConstraintKind::box, 0.5), plan);
+      const auto box = Reconstructor::create(one, make_objective(basis, ConstraintKind::box, 0.5), plan);
       REQUIRE(box.has_value());
       CHECK(solve_frame(*box, {3.0F}).x[0] == 1.0F);
       CHECK(solve_frame(*box, {-3.0F}).x[0] == 0.0F);
@@ -204,12 +203,12 @@ TEST_CASE("one pixel and one row have their closed forms") {
     }
   }
   // One row: min-norm direction a / ||a||^2, shrunk by rho = lambda.
-  const Response row = Response::from_dense(1, 6, {0.0, 1.0, 2.0, 0.0, -1.0, 0.5}).value();
+  const Response row = Response::from_dense(1, 6, {0.0, 1.0, 2.0, 0.0, -1.0, 0.5}).value().with_image(2, 3).value();
   Objective objective;
   objective.lambda = 0.25;
   Plan tikhonov;
   tikhonov.solver = recon::SolverKind::tikhonov;
-  const auto solver = Reconstructor::create(row, 2, 3, objective, tikhonov).value();
+  const auto solver = Reconstructor::create(row, objective, tikhonov).value();
   const SolvedFrame frame = solve_frame(solver, {13.0F});
   for (std::size_t n = 0; n < 6; ++n) {
     const double expected = 13.0 * row.values()[n] / (6.25 + 0.25);
@@ -224,16 +223,15 @@ TEST_CASE("pictures of every awkward size reach the reference") {
       CAPTURE(rows);
       CAPTURE(cols);
       const int n = rows * cols, m = (n + 1) / 2;
-      const Response a = random_response(random, m, n, 0.8);
+      const Response a = random_response(random, m, Picture{rows, cols}, 0.8);
       const auto y = to_float(random_vector(random, m, 0.0, 2.0));
       const Objective objective = make_objective(BasisKind::dct, constraint, 0.1);
-      const auto best = recon::reference::solve_reference(a, rows, cols, objective, to_double(y));
+      const auto best = recon::reference::solve_reference(a, objective, to_double(y));
       REQUIRE(best.converged);
       Plan plan;
       plan.iterations = 5000;
-      const SolvedFrame frame = solve_frame(Reconstructor::create(a, rows, cols, objective, plan).value(), y);
-      const double reached =
-          recon::reference::objective_value(a, rows, cols, objective, to_double(y), {}, to_double(frame.x));
+      const SolvedFrame frame = solve_frame(Reconstructor::create(a, objective, plan).value(), y);
+      const double reached = recon::reference::objective_value(a, objective, to_double(y), {}, to_double(frame.x));
       CHECK(reached <= best.objective * (1.0 + 1e-4) + 1e-7);
     }
   }
@@ -244,7 +242,7 @@ TEST_CASE("weights of one cost nothing and change nothing, also where none may d
   Plan plan;
   plan.max_reweighted = 0;
   const auto solver =
-      Reconstructor::create(frame.a, 8, 10, make_objective(BasisKind::dct, ConstraintKind::box, 0.05), plan).value();
+      Reconstructor::create(frame.a, make_objective(BasisKind::dct, ConstraintKind::box, 0.05), plan).value();
   const auto y = scaled(frame.y, 1.0);
   const SolvedFrame bare = solve_frame(solver, y), with_ones = solve_frame(solver, y, std::vector<float>(40, 1.0F));
   CHECK(bare.x == with_ones.x);
@@ -260,7 +258,7 @@ TEST_CASE("weights next to nought and next to one are as good as nought and one"
   plan.iterations = 300;
   plan.max_reweighted = 40;
   const auto solver =
-      Reconstructor::create(frame.a, 8, 10, make_objective(BasisKind::dct, ConstraintKind::box, 0.05), plan).value();
+      Reconstructor::create(frame.a, make_objective(BasisKind::dct, ConstraintKind::box, 0.05), plan).value();
   const auto y = scaled(frame.y, 1.0);
   const auto with = [&](float w) {
     std::vector<float> weights(40, 1.0F);
@@ -287,8 +285,12 @@ TEST_CASE("entries that only double can tell from nought do not reach the frame 
   Plan plan;
   plan.rho = 0.5;
   const Objective objective = make_objective(BasisKind::dct, ConstraintKind::nonnegative, 0.1);
-  const auto odd = Reconstructor::create(Response::from_dense(20, 48, values).value(), 6, 8, objective, plan).value();
-  const auto plain = Reconstructor::create(Response::from_dense(20, 48, clean).value(), 6, 8, objective, plan).value();
+  const auto odd =
+      Reconstructor::create(Response::from_dense(20, 48, values).value().with_image(6, 8).value(), objective, plan)
+          .value();
+  const auto plain =
+      Reconstructor::create(Response::from_dense(20, 48, clean).value().with_image(6, 8).value(), objective, plan)
+          .value();
   CHECK(solve_frame(odd, y).x == solve_frame(plain, y).x);
 }
 
@@ -298,7 +300,7 @@ TEST_CASE("a frame that overflows is invalid, black and without figures") {
     Plan plan;
     plan.precision = precision;
     const auto solver =
-        Reconstructor::create(frame.a, 8, 10, make_objective(BasisKind::identity, ConstraintKind::none, 0.0), plan);
+        Reconstructor::create(frame.a, make_objective(BasisKind::identity, ConstraintKind::none, 0.0), plan);
     REQUIRE(solver.has_value());
     const SolvedFrame solved = solve_frame(*solver, std::vector<float>(40, 3e38F));
     CHECK(solved.info.health == (precision == Precision::f32 ? Health::invalid : solved.info.health));

@@ -20,7 +20,7 @@ namespace {
 /// The textbook, in dense double: normalised correlations, a full least squares fit an element.
 std::vector<double> textbook_omp(const SolverProblem& problem, BasisKind basis, const std::vector<double>& y,
                                  const std::vector<double>& weights, int count) {
-  const Eigen::MatrixXd psi = recon::reference::basis_matrix(basis, problem.rows, problem.cols);
+  const Eigen::MatrixXd psi = recon::reference::basis_matrix(basis, problem.a.image_rows(), problem.a.image_cols());
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(problem.a.rows(), problem.a.cols());
   Eigen::VectorXd b(problem.a.rows());
   for (int m = 0; m < problem.a.rows(); ++m) {
@@ -88,7 +88,7 @@ TEST_CASE("omp takes the textbook's elements and amplitudes, with weights and in
         objective.basis = basis;
         auto plan = omp_plan(4, problem.a.rows());
         plan.precision = recon::Precision::f64;
-        const auto solver = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan);
+        const auto solver = recon::Reconstructor::create(problem.a, objective, plan);
         REQUIRE(solver.has_value());
         const SolvedFrame frame = solve_frame(*solver, to_float(y), to_float(weights));
         const auto expected = to_float(textbook_omp(problem, basis, y, weights, 4));
@@ -103,7 +103,7 @@ TEST_CASE("omp takes the textbook's elements and amplitudes, with weights and in
 
 TEST_CASE("omp recovers a sparse scene exactly and stops by itself") {
   Random random(32);
-  const auto a = random_response(random, 40, 80, 1.0);
+  const auto a = random_response(random, 40, Picture{8, 10}, 1.0);
   std::vector<double> truth(80, 0.0), y(40);
   truth[7] = 1.0;
   truth[31] = 0.5;
@@ -116,7 +116,7 @@ TEST_CASE("omp recovers a sparse scene exactly and stops by itself") {
     } else {
       objective.epsilon = 1e-3;
     }
-    const auto solver = recon::Reconstructor::create(a, 8, 10, objective, omp_plan(20, 0)).value();
+    const auto solver = recon::Reconstructor::create(a, objective, omp_plan(20, 0)).value();
     const SolvedFrame frame = solve_frame(solver, to_float(y));
     CHECK(frame.info.health == recon::Health::converged);
     CHECK(frame.info.iterations == 3);
@@ -126,8 +126,8 @@ TEST_CASE("omp recovers a sparse scene exactly and stops by itself") {
 
 TEST_CASE("omp passes over elements that depend on those it has, and stops when none is left") {
   // Two equal columns, one zero column, two rows.
-  const auto a = recon::Response::from_dense(2, 4, {1, 1, 0, 0.5, 2, 2, 0, -1}).value();
-  const auto solver = recon::Reconstructor::create(a, 2, 2, {}, omp_plan(4, 0)).value();
+  const auto a = recon::Response::from_dense(2, 4, {1, 1, 0, 0.5, 2, 2, 0, -1}).value().with_image(2, 2).value();
+  const auto solver = recon::Reconstructor::create(a, {}, omp_plan(4, 0)).value();
   const SolvedFrame frame = solve_frame(solver, {1.0F, 0.5F});
   CHECK(frame.info.iterations == 2);
   CHECK(frame.info.residual < 1e-5);

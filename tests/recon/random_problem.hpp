@@ -42,6 +42,17 @@ inline recon::Response random_response(Random& random, int rows, int cols, doubl
   return recon::Response::from_csr(rows, cols, start, columns, values).value();
 }
 
+/// The pixels that a response's columns are.
+struct Picture {
+  int rows, cols;
+};
+
+inline recon::Response random_response(Random& random, int rows, const Picture& picture, double density) {
+  return random_response(random, rows, picture.rows * picture.cols, density)
+      .with_image(picture.rows, picture.cols)
+      .value();
+}
+
 inline std::vector<double> random_vector(Random& random, int n, double lo = -1.0, double hi = 1.0) {
   std::vector<double> v(static_cast<std::size_t>(n));
   for (double& value : v) value = random.uniform(lo, hi);

@@ -19,7 +19,7 @@ namespace {
 
 recon::Response some_response() {
   Random random(91);
-  return random_response(random, 20, 48, 0.4);
+  return random_response(random, 20, Picture{6, 8}, 0.4);
 }
 
 recon::Objective dct_box(double lambda) {
@@ -34,15 +34,15 @@ recon::Objective dct_box(double lambda) {
 
 TEST_CASE("set-up refuses what makes no sense, and says what it expected") {
   const recon::Response a = some_response();
-  const auto code = [&](const recon::Objective& objective, const recon::Plan& plan, int rows = 6, int cols = 8) {
-    const auto made = Reconstructor::create(a, rows, cols, objective, plan);
+  const auto code = [&](const recon::Objective& objective, const recon::Plan& plan) {
+    const auto made = Reconstructor::create(a, objective, plan);
     REQUIRE_FALSE(made.has_value());
     CHECK_FALSE(made.error().sentence.empty());
     return made.error().code;
   };
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
-  CHECK(code(dct_box(0.1), {}, 6, 9) == ErrorCode::mismatch);
-  CHECK(code(dct_box(0.1), {}, 0, 0) == ErrorCode::mismatch);
+  CHECK(a.with_image(6, 9).error().code == ErrorCode::mismatch);
+  CHECK(Reconstructor::create(a.with_image(0, 0).value(), dct_box(0.1), {}).error().code == ErrorCode::mismatch);
   for (const double lambda : {-1.0, nan, inf}) CHECK(code(dct_box(lambda), {}) == ErrorCode::out_of_range);
   for (const int iterations : {0, -3, 1'000'001}) {
     recon::Plan plan;
@@ -60,17 +60,17 @@ TEST_CASE("set-up refuses what makes no sense, and says what it expected") {
   recon::Plan tikhonov;
   tikhonov.solver = recon::SolverKind::tikhonov;
   CHECK(code(dct_box(0.1), tikhonov) == ErrorCode::usage);
-  const auto blind = recon::Response::from_dense(3, 4, std::vector<double>(12, 0.0)).value();
-  CHECK(Reconstructor::create(blind, 2, 2, {}, {}).error().sentence.find("sees nothing") != std::string::npos);
+  const auto blind = recon::Response::from_dense(3, 4, std::vector<double>(12, 0.0)).value().with_image(2, 2).value();
+  CHECK(Reconstructor::create(blind, {}, {}).error().sentence.find("sees nothing") != std::string::npos);
 }
 
 TEST_CASE("another number of iterations gives the frames of a solver made with it") {
   const recon::Response a = some_response();
   recon::Plan plan;
   plan.iterations = 7;
-  auto changed = Reconstructor::create(a, 6, 8, dct_box(0.1), plan).value();
+  auto changed = Reconstructor::create(a, dct_box(0.1), plan).value();
   plan.iterations = 31;
-  const auto made = Reconstructor::create(a, 6, 8, dct_box(0.1), plan).value();
+  const auto made = Reconstructor::create(a, dct_box(0.1), plan).value();
   const std::vector<float> y(20, 1.0F);
   CHECK(solve_frame(changed, y).x != solve_frame(made, y).x);
   REQUIRE(changed.set_iterations(31));
@@ -83,14 +83,14 @@ TEST_CASE("another number of iterations gives the frames of a solver made with i
 
 TEST_CASE("a stored factor is used when it fits and refused when stale") {
   const recon::Response a = some_response();
-  const auto first = Reconstructor::create(a, 6, 8, dct_box(0.1), {}).value();
+  const auto first = Reconstructor::create(a, dct_box(0.1), {}).value();
   const std::vector<float> y(20, 1.0F);
-  const auto again = Reconstructor::create(a, 6, 8, dct_box(0.1), {}, first.factor()).value();
+  const auto again = Reconstructor::create(a, dct_box(0.1), {}, first.factor()).value();
   CHECK(solve_frame(first, y).x == solve_frame(again, y).x);
-  CHECK(Reconstructor::create(a, 6, 8, dct_box(0.2), {}, first.factor()).has_value());  // another lambda, the same rho
+  CHECK(Reconstructor::create(a, dct_box(0.2), {}, first.factor()).has_value());  // another lambda, the same rho
   recon::Plan other;
   other.rho = first.plan().rho * 2.0;
-  const auto stale = Reconstructor::create(a, 6, 8, dct_box(0.1), other, first.factor());
+  const auto stale = Reconstructor::create(a, dct_box(0.1), other, first.factor());
   REQUIRE_FALSE(stale.has_value());
   CHECK(stale.error().code == ErrorCode::stale);
 }
@@ -102,7 +102,7 @@ TEST_CASE("required_bytes is exact: a solver touches its last byte and none beyo
     CAPTURE(setting.name);
     recon::Plan plan = setting.plan;
     plan.max_reweighted = 2;
-    const auto solver = Reconstructor::create(a, 6, 8, setting.objective, plan).value();
+    const auto solver = Reconstructor::create(a, setting.objective, plan).value();
     const std::size_t bytes = solver.required_bytes();
     const recon::AlignedWorkspace memory(bytes + 256);
     std::memset(memory.span().data(), 0xA5, bytes + 256);
@@ -128,7 +128,7 @@ TEST_CASE("the same input gives the same bits, whatever was in the workspace bef
   weights[11] = 0.5F;
   for (const SolverSetting& setting : every_setting()) {
     CAPTURE(setting.name);
-    const auto solver = Reconstructor::create(a, 6, 8, setting.objective, setting.plan).value();
+    const auto solver = Reconstructor::create(a, setting.objective, setting.plan).value();
     const recon::AlignedWorkspace memory(solver.required_bytes());
     std::vector<float> first(48), second(48), between(48);
     std::memset(memory.span().data(), 0, memory.span().size());
@@ -152,9 +152,9 @@ TEST_CASE("the gap is measured when asked for, and costs its memory only then") 
     const bool has_gap = kind != recon::SolverKind::tikhonov && kind != recon::SolverKind::tsvd &&
                          kind != recon::SolverKind::omp &&
                          !(setting.objective.epsilon && setting.objective.constraint == recon::ConstraintKind::box);
-    const auto with = Reconstructor::create(a, 6, 8, setting.objective, setting.plan).value();
+    const auto with = Reconstructor::create(a, setting.objective, setting.plan).value();
     setting.plan.measure_gap = false;
-    const auto without = Reconstructor::create(a, 6, 8, setting.objective, setting.plan).value();
+    const auto without = Reconstructor::create(a, setting.objective, setting.plan).value();
     const SolvedFrame measured = solve_frame(with, y), plain = solve_frame(without, y);
     CHECK((measured.info.duality_gap >= 0.0) == has_gap);
     CHECK(plain.info.duality_gap == -1.0);
@@ -170,7 +170,7 @@ TEST_CASE("a dark frame stays dark and quick: no subnormal numbers in the answer
     CAPTURE(setting.name);
     recon::Plan plan = setting.plan;
     plan.iterations = 2000;
-    const auto solver = Reconstructor::create(a, 6, 8, setting.objective, plan).value();
+    const auto solver = Reconstructor::create(a, setting.objective, plan).value();
     for (const float level : {0.0F, 1e-12F, 1e-25F, 1e-40F}) {
       const SolvedFrame frame = solve_frame(solver, std::vector<float>(20, level));
       CHECK(frame.info.health != recon::Health::invalid);
@@ -181,7 +181,7 @@ TEST_CASE("a dark frame stays dark and quick: no subnormal numbers in the answer
 
 TEST_CASE("a solver can be moved and still owns its tables") {
   const recon::Response a = some_response();
-  auto made = Reconstructor::create(a, 6, 8, dct_box(0.1), {});
+  auto made = Reconstructor::create(a, dct_box(0.1), {});
   const std::vector<float> y(20, 1.0F);
   const auto before = solve_frame(*made, y).x;
   const Reconstructor moved = std::move(*made);

@@ -56,3 +56,29 @@ TEST_CASE("blind rows are found and rows can be selected and scaled") {
   CHECK(a.content_hash() != Response::from_dense(3, 2, {0, 0, 1, 2, 0, 3.0000001}).value().content_hash());
   CHECK(a.content_hash() != Response::from_dense(2, 3, {0, 0, 1, 2, 0, 3}).value().content_hash());
 }
+
+TEST_CASE("a response may know its picture, which goes with its rows and not into its hash") {
+  const Response bare = Response::from_dense(3, 6, std::vector<double>(18, 0.5)).value();
+  CHECK(bare.image_rows() == 0);
+  CHECK(bare.with_image(2, 4).error().code == ErrorCode::mismatch);
+  CHECK(bare.with_image(-2, -3).error().code == ErrorCode::mismatch);
+  CHECK(bare.with_image(0, 6).error().code == ErrorCode::mismatch);
+  const Response a = bare.with_image(2, 3).value();
+  CHECK(a.image_rows() == 2);
+  CHECK(a.image_cols() == 3);
+  CHECK(a.content_hash() == bare.content_hash());
+  CHECK(a.squared_norm() == doctest::Approx(4.5));
+  const Response some = a.select_rows(std::vector<std::int32_t>{2}, std::vector<double>{2.0});
+  CHECK(some.image_cols() == 3);
+  CHECK(some.squared_norm() == doctest::Approx(6.0));
+  CHECK(a.with_image(0, 0).value().image_rows() == 0);
+}
+
+TEST_CASE("without some rows a response keeps its shape, and those rows see nothing") {
+  const Response a = Response::from_dense(3, 2, {1, 2, 3, 4, 0, 5}).value().with_image(1, 2).value();
+  const Response living = a.without_rows(std::vector<int>{1});
+  CHECK(living.rows() == 3);
+  CHECK(living.seeing_rows() == std::vector<std::int32_t>{0, 2});
+  CHECK(living.image_cols() == 2);
+  CHECK(living.squared_norm() == doctest::Approx(30.0));
+}

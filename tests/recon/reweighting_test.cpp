@@ -23,7 +23,7 @@ struct Case {
 
 Case make_case(recon::BasisKind basis, recon::ConstraintKind constraint) {
   Random random(81);
-  Case c{random_response(random, 40, 80, 0.3), {}, {}, {}};
+  Case c{random_response(random, 40, Picture{8, 10}, 0.3), {}, {}, {}};
   std::vector<double> truth(80, 0.0), y(40);
   for (double& v : truth) v = random.uniform() < 0.3 ? random.uniform(0.3, 1.0) : 0.0;
   c.a.forward(truth, y);
@@ -51,7 +51,7 @@ SolvedFrame solve_refactored(const Case& c, const std::vector<float>& weights, d
   recon::Plan plan = c.plan;
   plan.rho = rho;
   plan.precision = recon::Precision::f64;
-  const auto solver = recon::Reconstructor::create(c.a.select_rows(rows, scale), 8, 10, c.objective, plan);
+  const auto solver = recon::Reconstructor::create(c.a.select_rows(rows, scale), c.objective, plan);
   return solve_frame(solver.value(), y);
 }
 
@@ -63,7 +63,7 @@ TEST_CASE("weights of a frame act like a new factor, to 1e-3, for every basis an
     for (const auto constraint :
          {recon::ConstraintKind::none, recon::ConstraintKind::nonnegative, recon::ConstraintKind::box}) {
       const Case c = make_case(basis, constraint);
-      const auto solver = recon::Reconstructor::create(c.a, 8, 10, c.objective, c.plan);
+      const auto solver = recon::Reconstructor::create(c.a, c.objective, c.plan);
       REQUIRE(solver.has_value());
       for (const double share : {0.0, 0.025, 0.05, 0.3, 0.9}) {
         std::vector<float> weights(40, 1.0F);
@@ -86,7 +86,7 @@ TEST_CASE("what a missing channel reads does not change a bit, NaN and infinity 
   const Case c = make_case(recon::BasisKind::dct, recon::ConstraintKind::box);
   for (const SolverSetting& setting : every_setting()) {
     CAPTURE(setting.name);
-    const auto solver = recon::Reconstructor::create(c.a, 8, 10, setting.objective, setting.plan).value();
+    const auto solver = recon::Reconstructor::create(c.a, setting.objective, setting.plan).value();
     std::vector<float> weights(40, 1.0F), y = c.y;
     weights[3] = weights[17] = 0.0F;
     const SolvedFrame plain = solve_frame(solver, y, weights);
@@ -106,7 +106,7 @@ TEST_CASE("bad samples, bad weights and too many of them make a frame invalid, n
   for (SolverSetting setting : every_setting()) {
     CAPTURE(setting.name);
     setting.plan.max_reweighted = 2;
-    const auto solver = recon::Reconstructor::create(c.a, 8, 10, setting.objective, setting.plan).value();
+    const auto solver = recon::Reconstructor::create(c.a, setting.objective, setting.plan).value();
     const auto check_invalid = [&](const std::vector<float>& y, const std::vector<float>& weights) {
       const SolvedFrame frame = solve_frame(solver, y, weights);
       CHECK(frame.info.health == recon::Health::invalid);
@@ -139,7 +139,7 @@ TEST_CASE("a frame with every channel missing is black and not a failure") {
   for (SolverSetting setting : every_setting()) {
     CAPTURE(setting.name);
     setting.plan.max_reweighted = 40;
-    const auto solver = recon::Reconstructor::create(c.a, 8, 10, setting.objective, setting.plan).value();
+    const auto solver = recon::Reconstructor::create(c.a, setting.objective, setting.plan).value();
     const SolvedFrame frame = solve_frame(solver, c.y, std::vector<float>(40, 0.0F));
     CHECK(frame.info.health != recon::Health::invalid);
     CHECK(frame.info.channels_used == 0);

@@ -23,7 +23,6 @@ namespace {
 struct Eye {
   std::string name;
   Response a;  // seeing rows
-  int rows, cols;
 };
 
 hal::EyeGeometry geometry(int side, double interommatidial_deg, double acceptance_deg) {
@@ -48,7 +47,7 @@ Response random_runs(Random& random, int count, int rows, int cols) {
       for (int c = 0; c < cols; ++c) values.push_back(std::clamp(std::min(end - c, c + 1.0 - begin), 0.0, 1.0));
     }
   }
-  return seeing(Response::from_dense(count, rows * cols, values).value());
+  return seeing(Response::from_dense(count, rows * cols, values).value().with_image(rows, cols).value());
 }
 
 std::vector<Eye> eyes() {
@@ -56,8 +55,7 @@ std::vector<Eye> eyes() {
   std::vector<Eye> all;
   const auto nominal = [&](int side, double dphi, double acceptance, const hal::ObjectPlane& plane) {
     all.push_back({"nominal " + std::to_string(side),
-                   seeing(calib::nominal_response(geometry(side, dphi, acceptance), plane).value()), plane.rows,
-                   plane.cols});
+                   seeing(calib::nominal_response(geometry(side, dphi, acceptance), plane).value())});
   };
   nominal(8, 1.5, 8.0, {16, 16, 8, 8, 30});
   nominal(7, 1.5, 8.0, {16, 16, 8, 8, 30});  // rows that are their own mirror images
@@ -65,11 +63,9 @@ std::vector<Eye> eyes() {
   nominal(16, 9.0, 60.0, {32, 48, 60, 60, 10});
   nominal(10, 9.0, 60.0, {96, 96, 60, 60, 10});  // large enough for bands
   const hal::ObjectPlane plane{32, 32, 60, 60, 10};
-  all.push_back(
-      {"measured", seeing(calib::plausible_response(geometry(12, 10.0, 60.0), plane, {}, 3).value()), 32, 32});
+  all.push_back({"measured", seeing(calib::plausible_response(geometry(12, 10.0, 60.0), plane, {}, 3).value())});
   for (const auto& [rows, cols] : {std::pair{1, 1}, {1, 9}, {9, 1}, {6, 7}, {7, 6}, {5, 5}, {101, 97}}) {
-    all.push_back(
-        {"runs " + std::to_string(rows) + "x" + std::to_string(cols), random_runs(random, 11, rows, cols), rows, cols});
+    all.push_back({"runs " + std::to_string(rows) + "x" + std::to_string(cols), random_runs(random, 11, rows, cols)});
   }
   return all;
 }
@@ -98,7 +94,7 @@ double bound(const Eye& eye, int m) {
   });
   differences += std::abs(before);
   const double unit = 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon());
-  const double longest_sum = 0.5 * eye.cols + 1.0;
+  const double longest_sum = 0.5 * eye.a.image_cols() + 1.0;
   return unit * (differences * longest_sum * (longest_sum + 0.25 * taps + 8.0) + 2.0 * entries);
 }
 
@@ -106,13 +102,13 @@ template <class T>
 void check_against_double(const Eye& eye, const recon::MirrorSymmetry& symmetry,
                           const std::vector<std::int32_t>& transposed, std::size_t at_once) {
   Random random(62);
-  const auto tables = recon::running_sum_tables<T>(eye.a, eye.rows, eye.cols, symmetry, transposed);
+  const auto tables = recon::running_sum_tables<T>(eye.a, symmetry, transposed);
   REQUIRE(tables.has_value());
   CHECK(tables->view.rows_at_once == at_once);
   CHECK(recon::core::bytes(tables->view) == tables->bytes());
   const recon::AlignedWorkspace memory(tables->view.scratch_size() * sizeof(T));
   auto* scratch = reinterpret_cast<T*>(memory.span().data());
-  const auto x = random_vector(random, eye.rows * eye.cols), u = random_vector(random, eye.a.rows());
+  const auto x = random_vector(random, eye.a.cols()), u = random_vector(random, eye.a.rows());
   const auto xt = cast<T>(x), ut = cast<T>(u);
   std::vector<T> y(u.size()), back(x.size(), T(1));
   recon::core::forward(tables->view, xt.data(), y.data(), scratch);
@@ -142,14 +138,14 @@ TEST_CASE("running sums are A and A' within the bound of their sums, with symmet
   int with_four = 0, with_eight = 0, banded = 0;
   for (const Eye& eye : eyes()) {
     CAPTURE(eye.name);
-    const auto found = recon::find_mirror_symmetry(eye.a, eye.rows, eye.cols);
-    const auto transposed = recon::find_diagonal_symmetry(eye.a, eye.rows, eye.cols);
+    const auto found = recon::find_mirror_symmetry(eye.a);
+    const auto transposed = recon::find_diagonal_symmetry(eye.a);
     const recon::MirrorSymmetry none{{found.permutations.front()}, {{1}}};
-    const bool four = found.order() == 4 && eye.rows % 2 == 0 && eye.cols % 2 == 0;
-    const bool eight = four && eye.rows == eye.cols && !transposed.empty();
+    const bool four = found.order() == 4 && eye.a.image_rows() % 2 == 0 && eye.a.image_cols() % 2 == 0;
+    const bool eight = four && eye.a.image_rows() == eye.a.image_cols() && !transposed.empty();
     with_four += four ? 1 : 0;
     with_eight += eight ? 1 : 0;
-    banded += recon::running_sum_tables<float>(eye.a, eye.rows, eye.cols, none)->view.bands > 1 ? 1 : 0;
+    banded += recon::running_sum_tables<float>(eye.a, none)->view.bands > 1 ? 1 : 0;
     if (eight) check_against_double<float>(eye, found, transposed, 8);
     if (eight) check_against_double<double>(eye, found, transposed, 8);
     check_against_double<float>(eye, found, {}, four ? 4 : 1);
@@ -170,28 +166,28 @@ TEST_CASE("diagonal symmetry is its own inverse and asks for a square picture an
     return seeing(calib::nominal_response(eye, plane).value());
   };
   const Response square = nominal(8, 8, {16, 16, 8, 8, 30});
-  const auto transposed = recon::find_diagonal_symmetry(square, 16, 16);
+  const auto transposed = recon::find_diagonal_symmetry(square);
   REQUIRE(transposed.size() == 64);
   for (std::int32_t m = 0; m < 64; ++m) CHECK(transposed[static_cast<std::size_t>(m)] == m % 8 * 8 + m / 8);
-  CHECK(recon::find_diagonal_symmetry(nominal(8, 6, {16, 16, 8, 8, 30}), 16, 16).empty());
-  CHECK(recon::find_diagonal_symmetry(nominal(8, 8, {16, 12, 8, 8, 30}), 16, 12).empty());
-  CHECK(recon::find_diagonal_symmetry(nominal(8, 8, {16, 16, 8, 9, 30}), 16, 16).empty());
+  CHECK(recon::find_diagonal_symmetry(nominal(8, 6, {16, 16, 8, 8, 30})).empty());
+  CHECK(recon::find_diagonal_symmetry(nominal(8, 8, {16, 12, 8, 8, 30})).empty());
+  CHECK(recon::find_diagonal_symmetry(nominal(8, 8, {16, 16, 8, 9, 30})).empty());
 }
 
 TEST_CASE("an eye's operator is running sums, a matrix without runs is not") {
-  const auto kind_of = [](const Response& a, int rows, int cols) {
+  const auto kind_of = [](const Response& a) {
     recon::OwnedTables<float> tables;
-    REQUIRE(recon::fill_operator(a, rows, cols, std::nullopt, tables).has_value());
+    REQUIRE(recon::fill_operator(a, std::nullopt, tables).has_value());
     return tables.problem.a.kind;
   };
   Random random(63);
   const auto nominal = [&](int side, double dphi, const hal::ObjectPlane& plane) {
-    return kind_of(seeing(calib::nominal_response(geometry(side, dphi, 60.0), plane).value()), plane.rows, plane.cols);
+    return kind_of(seeing(calib::nominal_response(geometry(side, dphi, 60.0), plane).value()));
   };
   CHECK(nominal(24, 4.5, {96, 96, 60, 60, 10}) == recon::OperatorKind::running_sums_diagonal);
   CHECK(nominal(8, 9.0, {96, 96, 60, 60, 10}) == recon::OperatorKind::running_sums_symmetric);  // few rows
   CHECK(nominal(16, 9.0, {32, 48, 60, 60, 10}) == recon::OperatorKind::running_sums_symmetric);
-  CHECK(kind_of(random_response(random, 20, 256, 1.0), 16, 16) == recon::OperatorKind::dense);
-  CHECK(kind_of(random_response(random, 20, 256, 0.05), 16, 16) == recon::OperatorKind::csr);
-  CHECK(kind_of(random_runs(random, 300, 20, 60), 20, 60) == recon::OperatorKind::running_sums);
+  CHECK(kind_of(random_response(random, 20, Picture{16, 16}, 1.0)) == recon::OperatorKind::dense);
+  CHECK(kind_of(random_response(random, 20, Picture{16, 16}, 0.05)) == recon::OperatorKind::csr);
+  CHECK(kind_of(random_runs(random, 300, 20, 60)) == recon::OperatorKind::running_sums);
 }

@@ -11,11 +11,9 @@
 
 namespace compueye::tests {
 
-/// A on a rows x cols picture.
 struct SolverProblem {
   std::string name;
   recon::Response a;
-  int rows, cols;
 };
 
 inline recon::Response with_rows(const recon::Response& a, const std::vector<std::int32_t>& order,
@@ -28,7 +26,10 @@ inline recon::Response with_rows(const recon::Response& a, const std::vector<std
     }
     values.insert(values.end(), row.begin(), row.end());
   }
-  return recon::Response::from_dense(static_cast<int>(order.size()), a.cols(), values).value();
+  return recon::Response::from_dense(static_cast<int>(order.size()), a.cols(), values)
+      .value()
+      .with_image(a.image_rows(), a.image_cols())
+      .value();
 }
 
 inline recon::Response without_columns(const recon::Response& a, int every) {
@@ -39,7 +40,10 @@ inline recon::Response without_columns(const recon::Response& a, int every) {
         values[static_cast<std::size_t>(m) * static_cast<std::size_t>(a.cols()) + static_cast<std::size_t>(n)] = v;
     });
   }
-  return recon::Response::from_dense(a.rows(), a.cols(), values).value();
+  return recon::Response::from_dense(a.rows(), a.cols(), values)
+      .value()
+      .with_image(a.image_rows(), a.image_cols())
+      .value();
 }
 
 /// An eye of 6 x 6 ommatidia of 8 degrees as a calibration might find it, in front of 10 x 10 pixels.
@@ -57,18 +61,18 @@ inline recon::Response measured_eye(std::uint64_t seed) {
 inline std::vector<SolverProblem> solver_problems() {
   Random random(71);
   std::vector<SolverProblem> all;
-  all.push_back({"dense wide", random_response(random, 12, 36, 1.0), 6, 6});
-  all.push_back({"sparse wide", random_response(random, 16, 48, 0.15), 6, 8});
-  all.push_back({"dense tall", random_response(random, 50, 20, 1.0), 4, 5});
-  all.push_back({"sparse tall", random_response(random, 60, 24, 0.1), 4, 6});
-  const recon::Response base = random_response(random, 10, 30, 0.5);
+  all.push_back({"dense wide", random_response(random, 12, Picture{6, 6}, 1.0)});
+  all.push_back({"sparse wide", random_response(random, 16, Picture{6, 8}, 0.15)});
+  all.push_back({"dense tall", random_response(random, 50, Picture{4, 5}, 1.0)});
+  all.push_back({"sparse tall", random_response(random, 60, Picture{4, 6}, 0.1)});
+  const recon::Response base = random_response(random, 10, Picture{5, 6}, 0.5);
   const std::vector<std::int32_t> twice{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0, 1, 2, 3, 3, 3};
-  all.push_back({"duplicated rows", with_rows(base, twice, std::vector<double>(16, 1.0)), 5, 6});
+  all.push_back({"duplicated rows", with_rows(base, twice, std::vector<double>(16, 1.0))});
   const std::vector<std::int32_t> blind{0, -1, 2, -1, 4, 5, -1, 7, 8, 9};
-  all.push_back({"zero rows", with_rows(base, blind, std::vector<double>(10, 1.0)), 5, 6});
-  all.push_back({"zero columns", without_columns(random_response(random, 14, 30, 0.7), 4), 5, 6});
-  all.push_back({"scaled rows", with_rows(base, {0, 1, 2, 3, 4, 5}, {1, 10, 0.1, 3, 0.03, 1}), 5, 6});
-  all.push_back({"measured rows", measured_eye(1), 10, 10});
+  all.push_back({"zero rows", with_rows(base, blind, std::vector<double>(10, 1.0))});
+  all.push_back({"zero columns", without_columns(random_response(random, 14, Picture{5, 6}, 0.7), 4)});
+  all.push_back({"scaled rows", with_rows(base, {0, 1, 2, 3, 4, 5}, {1, 10, 0.1, 3, 0.03, 1})});
+  all.push_back({"measured rows", measured_eye(1)});
 #if defined(COMPUEYE_SANITIZED)
   return {all[0], all[5], all[8]};
 #else

@@ -55,10 +55,10 @@ std::vector<T> stepped(const recon::core::ThinStep<T>& step, std::size_t level, 
 }
 
 template <class T>
-void check_step(const recon::Response& a, int image_rows, int image_cols, std::size_t lanes, double tolerance) {
-  const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a, image_rows, image_cols));
+void check_step(const recon::Response& a, std::size_t lanes, double tolerance) {
+  const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a));
   const std::vector<double> penalties{0.9, 0.05, 7.0};
-  const auto tables = recon::thin_step_tables<T>(a, image_rows, image_cols, classes, penalties);
+  const auto tables = recon::thin_step_tables<T>(a, classes, penalties);
   REQUIRE(tables.view.rows > 0);
   REQUIRE(tables.view.lanes == lanes);
   const Eigen::MatrixXd matrix = dense_matrix(a);
@@ -84,19 +84,19 @@ void check_step(const recon::Response& a, int image_rows, int image_cols, std::s
 TEST_CASE("the thin step is the quadratic step for every penalty, by parity classes and whole") {
   const recon::Response folded = small_eye();
   Random random(12);
-  const recon::Response whole = random_response(random, 24, 128, 0.6);
-  check_step<double>(folded, 16, 16, 4, 1e-12);
-  check_step<double>(whole, 8, 16, 1, 1e-12);
+  const recon::Response whole = random_response(random, 24, Picture{8, 16}, 0.6);
+  check_step<double>(folded, 4, 1e-12);
+  check_step<double>(whole, 1, 1e-12);
   // Rounding of entries and sums, times ||y - A v|| / (s + rho) where s is least: 1e3 roundings of a float.
-  check_step<float>(folded, 16, 16, 4, 6e-5);
-  check_step<float>(whole, 8, 16, 1, 6e-5);
+  check_step<float>(folded, 4, 6e-5);
+  check_step<float>(whole, 1, 6e-5);
 }
 
 TEST_CASE("there is no thin step where pixels do not fill vectors or A is large") {
   Random random(4);
   for (const auto& [rows, cols, image_rows] : {std::array{10, 100, 10}, std::array{300, 1024, 32}}) {
-    const recon::Response a = random_response(random, rows, cols, 0.5);
-    const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a, image_rows, cols / image_rows));
-    CHECK(recon::thin_step_tables<float>(a, image_rows, cols / image_rows, classes, {1.0}).view.rows == 0);
+    const recon::Response a = random_response(random, rows, Picture{image_rows, cols / image_rows}, 0.5);
+    const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a));
+    CHECK(recon::thin_step_tables<float>(a, classes, {1.0}).view.rows == 0);
   }
 }

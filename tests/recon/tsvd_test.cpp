@@ -32,26 +32,26 @@ recon::Response symmetric_response(int side) {
       }
     }
   }
-  return recon::Response::from_dense(n / 4 * 4, n, values).value();
+  return recon::Response::from_dense(n / 4 * 4, n, values).value().with_image(side, side).value();
 }
 
-SolvedFrame solve_tsvd(const recon::Response& a, int rows, int cols, int rank, const std::vector<double>& y,
+SolvedFrame solve_tsvd(const recon::Response& a, int rank, const std::vector<double>& y,
                        const std::vector<float>& weights = {}) {
   recon::Plan plan;
   plan.solver = SolverKind::tsvd;
   plan.rank = rank;
   plan.precision = recon::Precision::f64;
   plan.max_reweighted = a.rows();
-  return solve_frame(recon::Reconstructor::create(a, rows, cols, {}, plan).value(), to_float(y), weights);
+  return solve_frame(recon::Reconstructor::create(a, {}, plan).value(), to_float(y), weights);
 }
 
 }  // namespace
 
 TEST_CASE("singular pairs are those of a dense decomposition, parity classes or none") {
   Random random(18);
-  for (const recon::Response& a : {symmetric_response(6), random_response(random, 12, 36, 0.5)}) {
+  for (const recon::Response& a : {symmetric_response(6), random_response(random, 12, Picture{6, 6}, 0.5)}) {
     const auto svd = recon::reference::singular_pairs(dense_matrix(a));
-    const auto modes = recon::singular_modes(a, 6, 6, 10, 0.0, {});
+    const auto modes = recon::singular_modes(a, 10, 0.0, {});
     REQUIRE(modes.has_value());
     REQUIRE(modes->values.size() == 10);
     const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> left(
@@ -67,7 +67,7 @@ TEST_CASE("singular pairs are those of a dense decomposition, parity classes or 
 
 TEST_CASE("tsvd is the truncated decomposition's answer at every rank") {
   Random random(19);
-  for (const recon::Response& a : {symmetric_response(6), random_response(random, 14, 36, 0.6)}) {
+  for (const recon::Response& a : {symmetric_response(6), random_response(random, 14, Picture{6, 6}, 0.6)}) {
     const auto y = random_vector(random, a.rows(), 0.0, 3.0);
     const auto svd = recon::reference::singular_pairs(dense_matrix(a));
     const auto yf = to_float(y);
@@ -79,7 +79,7 @@ TEST_CASE("tsvd is the truncated decomposition's answer at every rank") {
           product += svd.u(m, k) * static_cast<double>(yf[static_cast<std::size_t>(m)]);
         x += svd.v.col(k) * product / svd.values[k];
       }
-      const SolvedFrame frame = solve_tsvd(a, 6, 6, rank, y);
+      const SolvedFrame frame = solve_tsvd(a, rank, y);
       CHECK(relative_difference(frame.x, to_float({x.data(), x.data() + 36})) < 1e-6);
       CHECK(frame.info.iterations == 1);
       CHECK(frame.info.health == recon::Health::converged);
@@ -93,7 +93,7 @@ TEST_CASE("tsvd is the truncated decomposition's answer at every rank") {
 
 TEST_CASE("tsvd with weights is the weighted fit within the leading pairs") {
   Random random(20);
-  const auto a = random_response(random, 24, 36, 0.6);
+  const auto a = random_response(random, 24, Picture{6, 6}, 0.6);
   const auto y = random_vector(random, 24, 0.0, 3.0);
   const auto yf = to_float(y);
   std::vector<float> weights(24, 1.0F);
@@ -111,7 +111,7 @@ TEST_CASE("tsvd with weights is the weighted fit within the leading pairs") {
     const Eigen::VectorXd d =
         recon::reference::least_squares(u.transpose() * w.asDiagonal() * u, u.transpose() * w.cwiseProduct(b));
     const Eigen::VectorXd x = svd.v.leftCols(rank) * d.cwiseQuotient(svd.values.head(rank));
-    CHECK(relative_difference(solve_tsvd(a, 6, 6, rank, y, weights).x, to_float({x.data(), x.data() + 36})) < 1e-4);
+    CHECK(relative_difference(solve_tsvd(a, rank, y, weights).x, to_float({x.data(), x.data() + 36})) < 1e-4);
   }
 }
 
@@ -119,18 +119,18 @@ TEST_CASE("the rank follows lambda where none is given, and impossible ones are 
   Random random(21);
   const auto a = random_response(random, 12, 36, 0.6);
   const Eigen::VectorXd s = recon::reference::singular_pairs(dense_matrix(a)).values;
-  const auto by_lambda = recon::singular_modes(a, 6, 6, 0, s[4] * s[4] * 0.999, {});
+  const auto by_lambda = recon::singular_modes(a, 0, s[4] * s[4] * 0.999, {});
   REQUIRE(by_lambda.has_value());
   CHECK(by_lambda->values.size() == 5);
-  const auto too_many = recon::singular_modes(a, 6, 6, 13, 0.0, {});
+  const auto too_many = recon::singular_modes(a, 13, 0.0, {});
   REQUIRE_FALSE(too_many.has_value());
   CHECK(too_many.error().place == "rank");
   CHECK(too_many.error().sentence.find("1 to 12") != std::string::npos);
-  CHECK_FALSE(recon::singular_modes(a, 6, 6, 0, s[0] * s[0] * 1.01, {}).has_value());
-  const auto stopped = recon::singular_modes(a, 6, 6, 3, 0.0, [](std::string_view, double, double) { return false; });
+  CHECK_FALSE(recon::singular_modes(a, 0, s[0] * s[0] * 1.01, {}).has_value());
+  const auto stopped = recon::singular_modes(a, 3, 0.0, [](std::string_view, double, double) { return false; });
   REQUIRE_FALSE(stopped.has_value());
   CHECK(stopped.error().code == hal::ErrorCode::interrupted);
   recon::Plan plan;
   plan.solver = SolverKind::tsvd;
-  CHECK(recon::Reconstructor::create(a, 6, 6, {}, plan).error().code == hal::ErrorCode::usage);
+  CHECK(recon::Reconstructor::create(a, {}, plan).error().code == hal::ErrorCode::usage);
 }

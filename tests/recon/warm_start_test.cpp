@@ -29,7 +29,7 @@ struct Scene {
 
 Scene some_scene() {
   Random random(31);
-  return {random_response(random, 40, 80, 0.4)};
+  return {random_response(random, 40, Picture{8, 10}, 0.4)};
 }
 
 recon::Reconstructor make(const recon::Response& a, int iterations, bool warm,
@@ -44,7 +44,7 @@ recon::Reconstructor make(const recon::Response& a, int iterations, bool warm,
   plan.iterations = iterations;
   plan.precision = precision;
   plan.warm_start = warm;
-  return recon::Reconstructor::create(a, 8, 10, objective, plan).value();
+  return recon::Reconstructor::create(a, objective, plan).value();
 }
 
 /// Solves frames one after the other in one workspace, whose first content is arbitrary.
@@ -154,5 +154,5 @@ TEST_CASE("only pdhg goes on from the last frame") {
   const Scene scene = some_scene();
   recon::Plan plan;
   plan.warm_start = true;
-  CHECK(recon::Reconstructor::create(scene.a, 8, 10, {}, plan).error().code == hal::ErrorCode::usage);
+  CHECK(recon::Reconstructor::create(scene.a, {}, plan).error().code == hal::ErrorCode::usage);
 }

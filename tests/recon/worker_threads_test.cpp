@@ -90,7 +90,7 @@ Applied<T> applied_by(recon::OwnedTables<T>& tables, const recon::core::Crew& cr
 template <class T>
 void check_operator(const Response& a, int rows, OperatorKind asked, OperatorKind kind, BasisKind basis) {
   recon::OwnedTables<T> tables;
-  REQUIRE(recon::fill_operator(recon::quantised(a, asked), rows, side, asked, tables).has_value());
+  REQUIRE(recon::fill_operator(recon::quantised(a, asked), asked, tables).has_value());
   CHECK(tables.problem.a.kind == kind);
   recon::fill_basis(basis, rows, side, tables);
   const Applied<T> alone = applied_by(tables, {});
@@ -107,7 +107,7 @@ void check_operator(const Response& a, int rows, OperatorKind asked, OperatorKin
 
 SolvedFrame solved_by(int threads, const Response& a, const recon::Objective& objective, recon::Plan plan) {
   plan.threads = threads;
-  const auto made = recon::Reconstructor::create(a, side, side, objective, plan);
+  const auto made = recon::Reconstructor::create(a, objective, plan);
   REQUIRE(made.has_value());
   CHECK(made->plan().threads == threads);
   Random random(102);
@@ -198,7 +198,7 @@ TEST_CASE("frames solved at once by several callers share the workers or do with
   plan.iterations = 10;
   plan.threads = 3;
   const Response a = measured(4);
-  const auto solver = recon::Reconstructor::create(a, side, side, objective, plan).value();
+  const auto solver = recon::Reconstructor::create(a, objective, plan).value();
   Random random(103);
   const auto y = to_float(random_vector(random, a.rows(), 1.0, 200.0));
   const SolvedFrame expected = solve_frame(solver, y);
@@ -223,7 +223,7 @@ TEST_CASE("sharing a frame does not touch the heap, after a rest neither") {
   plan.iterations = 3;
   plan.threads = 3;
   const Response a = measured(4);
-  const auto solver = recon::Reconstructor::create(a, side, side, objective, plan).value();
+  const auto solver = recon::Reconstructor::create(a, objective, plan).value();
   const recon::AlignedWorkspace workspace(solver.required_bytes());
   std::vector<float> y(static_cast<std::size_t>(a.rows()), 1.0F), x(side * side);
   const HeapUse before = heap_use_of_this_thread();
@@ -240,7 +240,7 @@ TEST_CASE("a number of threads out of range is refused") {
   recon::Plan plan;
   for (const int threads : {0, -1, recon::WorkerThreads::most + 1}) {
     plan.threads = threads;
-    const auto made = recon::Reconstructor::create(measured(4), side, side, objective, plan);
+    const auto made = recon::Reconstructor::create(measured(4), objective, plan);
     REQUIRE_FALSE(made.has_value());
     CHECK(made.error().place == "threads");
     CHECK(made.error().sentence.find("1 to 64") != std::string::npos);

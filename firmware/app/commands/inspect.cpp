@@ -85,7 +85,7 @@ Result<void> inspect_array(const InspectRequest& o, const recon::Progress& progr
     matrix.error().place = o.what;
     return tl::unexpected(std::move(matrix.error()));
   }
-  return add_response_figures(*matrix, picture_size_from(o.size), progress, figures);
+  return add_response_figures(std::move(*matrix), picture_size_from(o.size), progress, figures);
 }
 
 Result<void> add_figures(const InspectRequest& o, const recon::Progress& progress, Figures& figures) {

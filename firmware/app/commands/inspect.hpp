@@ -19,11 +19,11 @@ namespace compueye::firmware {
 
 /// What a calibrator wants to know of a matrix before using it. With the picture's `size` also what depends on its rows
 /// and columns: mirror symmetry, how A is applied, and the exact memory of admm. Errors: mismatch (size), interrupted.
-[[nodiscard]] hal::Result<void> add_response_figures(const recon::Response& a, std::optional<PictureSize> size,
+[[nodiscard]] hal::Result<void> add_response_figures(recon::Response a, std::optional<PictureSize> size,
                                                      const recon::Progress& progress, Figures& figures);
 
 /// How A is applied and what one application takes, as `asked` or by rule. Errors: those of recon::operator_figures().
-[[nodiscard]] hal::Result<void> add_operator_figures(const recon::Response& response, int image_rows, int image_cols,
+[[nodiscard]] hal::Result<void> add_operator_figures(const recon::Response& response,
                                                      std::optional<recon::OperatorKind> asked, Figures& figures);
 
 }  // namespace compueye::firmware

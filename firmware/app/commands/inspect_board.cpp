@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "calib/nominal.hpp"
-#include "firmware/eye/dead_ommatidia.hpp"
 #include "firmware/eye/ready_eye.hpp"
 #include "firmware/eye/settings/setting.hpp"
 #include "firmware/files/factor_cache.hpp"
@@ -110,20 +109,19 @@ void add_solver(const Board& board, Figures& figures) {
 
 /// Returns what the board's factor has to be.
 Result<recon::Factor> add_rules(const Board& board, const recon::Response& a, Figures& figures) {
-  const int rows = board.object.rows, cols = board.object.cols;
   const auto chosen = [&](std::optional<double> by_hand) {
-    return choose_lambda(a, rows, cols, board.plan.solver, board.objective.basis, by_hand, board.noise_sigma());
+    return choose_lambda(a, board.plan.solver, board.objective.basis, by_hand, board.noise_sigma());
   };
   const double by_rule = TRY(chosen(std::nullopt)).value;
   const LambdaChoice lambda = TRY(chosen(board.lambda));
   recon::Objective objective = board.objective;
   objective.lambda = lambda.value;
-  const double rho = recon::resolve_rho(a, rows, cols, objective, board.plan);
+  const double rho = recon::resolve_rho(a, objective, board.plan);
   const auto whose = [](bool by_the_rule) { return by_the_rule ? " (by rule)" : " (the board's)"; };
   figures.add("lambda_by_rule", "lambda by rule", significant(by_rule, 5), by_rule);
   figures.add("lambda", "lambda in use", significant(lambda.value, 5) + whose(lambda.by_rule), lambda.value);
   figures.add("rho", "rho in use", significant(rho, 5) + whose(!(board.plan.rho > 0.0)), rho);
-  return recon::Reconstructor::wanted_factor(a, rows, cols, objective, board.plan);
+  return recon::Reconstructor::wanted_factor(a, objective, board.plan);
 }
 
 std::vector<fs::path> factor_files(const fs::path& folder) {
@@ -173,14 +171,14 @@ Result<void> add_board_figures(const Board& board, const recon::Progress& progre
   const recon::Response nominal = TRY(calib::nominal_response(board.eye, board.object, progress));
   const std::optional<recon::OperatorKind> op = board.plan.op;
   const recon::Response a =
-      recon::quantised(without_dead(nominal, board.sensor.dead), op.value_or(recon::OperatorKind::csr));
+      recon::quantised(nominal.without_rows(board.sensor.dead), op.value_or(recon::OperatorKind::csr));
   const auto seeing = static_cast<int>(a.seeing_rows().size());
   figures.add("seeing_channels", "seeing channels", fmt::format("{} of {}", grouped(seeing), grouped(a.rows())),
               seeing);
   figures.add("entries", "response entries", grouped(a.stored_entries()), a.stored_entries());
   if (seeing == 0) return {};
   if (progress) progress("operator", 0.0, 0.0);
-  TRY(add_operator_figures(a, board.object.rows, board.object.cols, op, figures));
+  TRY(add_operator_figures(a, op, figures));
   if (progress) progress("lambda by rule", 0.0, 0.0);
   const recon::Factor wanted = TRY(add_rules(board, a, figures));
   add_cache(board, {a.content_hash(), wanted.rho, wanted.order, wanted.metric, wanted.rank}, figures);

@@ -164,9 +164,9 @@ void add_ranges(const Response& a, Figures& figures) {
               std::vector<double>{*low, *high});
 }
 
-void add_symmetry(const Response& a, PictureSize size, Figures& figures) {
+void add_symmetry(const Response& a, Figures& figures) {
   // As the solver's set-up does: blind rows have no place in the picture and so no mirror image.
-  const std::size_t order = recon::find_mirror_symmetry(a.select_rows(a.seeing_rows()), size.rows, size.cols).order();
+  const std::size_t order = recon::find_mirror_symmetry(a.select_rows(a.seeing_rows())).order();
   figures.add("mirror_symmetry", "mirror symmetry",
               order == 4   ? "left-right and up-down (set-up is 16 times faster)"
               : order == 2 ? "one axis (set-up is 4 times faster)"
@@ -175,18 +175,17 @@ void add_symmetry(const Response& a, PictureSize size, Figures& figures) {
 }
 
 /// Exact, from a reconstructor that is handed an empty factor instead of computing one.
-Result<void> add_memory(const Response& a, PictureSize size, Figures& figures) {
+Result<void> add_memory(const Response& a, Figures& figures) {
   const std::size_t seeing = a.seeing_rows().size();
   if (seeing == 0) return {};
   const recon::ParityClasses classes(static_cast<int>(seeing),
-                                     recon::find_mirror_symmetry(a.select_rows(a.seeing_rows()), size.rows, size.cols));
+                                     recon::find_mirror_symmetry(a.select_rows(a.seeing_rows())));
   const std::size_t packed = recon::factor_size(classes);
   if (packed * sizeof(float) > most_factor_bytes) return {};
   const recon::Objective objective;
   recon::Plan plan;
-  recon::Factor factor{recon::resolve_rho(a, size.rows, size.cols, objective, plan), static_cast<int>(seeing),
-                       std::vector<float>(packed)};
-  const auto made = TRY(recon::Reconstructor::create(a, size.rows, size.cols, objective, plan, std::move(factor)));
+  recon::Factor factor{recon::resolve_rho(a, objective, plan), static_cast<int>(seeing), std::vector<float>(packed)};
+  const auto made = TRY(recon::Reconstructor::create(a, objective, plan, std::move(factor)));
   figures.add("rho_by_rule", "rho by rule", significant(made.plan().rho, 4), made.plan().rho);
   figures.add(
       "admm_memory", "memory of admm (f32)",
@@ -206,9 +205,9 @@ void add_lambda_scales(const Response& a, Figures& figures) {
 
 }  // namespace
 
-hal::Result<void> add_operator_figures(const recon::Response& response, int image_rows, int image_cols,
-                                       std::optional<recon::OperatorKind> asked, Figures& figures) {
-  const auto found = TRY(recon::operator_figures(response, image_rows, image_cols, asked));
+hal::Result<void> add_operator_figures(const recon::Response& response, std::optional<recon::OperatorKind> asked,
+                                       Figures& figures) {
+  const auto found = TRY(recon::operator_figures(response, asked));
   figures.add("operator", "operator (how A is applied)",
               fmt::format("{}{}", recon::name(found.kind), asked ? "" : " (by rule)"), recon::name(found.kind));
   figures.add("operator_cost", "A x, and as much A' y",
@@ -218,13 +217,14 @@ hal::Result<void> add_operator_figures(const recon::Response& response, int imag
   return {};
 }
 
-Result<void> add_response_figures(const Response& a, std::optional<PictureSize> size, const recon::Progress& progress,
+Result<void> add_response_figures(Response a, std::optional<PictureSize> size, const recon::Progress& progress,
                                   Figures& figures) {
   if (size && size->rows * size->cols != a.cols()) {
     return fail(ErrorCode::mismatch, "--size",
                 fmt::format("{}x{} has {} pixels, the response has {} columns, expected them to be equal", size->rows,
                             size->cols, size->rows * size->cols, a.cols()));
   }
+  if (size) a = TRY(std::move(a).with_image(size->rows, size->cols));
   const calib::ResponseSummary summary = calib::summarise(a);
   add_shape(a, summary, figures);
   add_support(summary, count_duplicate_rows(a), figures);
@@ -238,9 +238,9 @@ Result<void> add_response_figures(const Response& a, std::optional<PictureSize> 
   figures.add("largest_singular_value_settled", largest.settled);
   add_lambda_scales(a, figures);
   if (!size || summary.seeing_rows() == 0) return {};
-  add_symmetry(a, *size, figures);
-  TRY(add_operator_figures(a, size->rows, size->cols, std::nullopt, figures));
-  return add_memory(a, *size, figures);
+  add_symmetry(a, figures);
+  TRY(add_operator_figures(a, std::nullopt, figures));
+  return add_memory(a, figures);
 }
 
 }  // namespace compueye::firmware

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -55,8 +54,7 @@ Result<void> check_sees(const ReconstructOptions& o, const recon::Response& resp
 
 /// The factor and the penalty come from squares of the entries.
 Result<void> check_range(const ReconstructOptions& o, const recon::Response& response) {
-  const auto values = response.values();
-  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  const double squares = response.squared_norm();
   const double limit =
       o.precision == "f64" ? std::numeric_limits<double>::max() : double{std::numeric_limits<float>::max()};
   if (squares <= limit) return {};
@@ -71,6 +69,7 @@ Result<Inputs> read_inputs(const ReconstructOptions& o, PictureSize size, const 
   recon::Response response = TRY(read_response(o.response));
   TRY(session.check_stop());
   TRY(check_size(o, response, size));
+  response = TRY(std::move(response).with_image(size.rows, size.cols));
   TRY(check_sees(o, response, false));
   inputs.frames = TRY(read_frame_inputs(response, o.samples, o.weights));
   inputs.response = scaled_response(std::move(response), inputs.frames);
@@ -89,8 +88,8 @@ Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, con
                 "needs a first frame whose weights are the largest of every channel, expected --weights of shape (M,) "
                 "or a complete first frame");
   }
-  auto found = recon::lambda_by_risk(*inputs.response, problem.size.rows, problem.size.cols, problem.objective,
-                                     problem.plan, inputs.frames.samples_of(0), *o.sigma, std::nullopt, progress);
+  auto found = recon::lambda_by_risk(*inputs.response, problem.objective, problem.plan, inputs.frames.samples_of(0),
+                                     *o.sigma, std::nullopt, progress);
   if (!found && found.error().code != ErrorCode::interrupted) found.error().place = o.samples;
   return found;
 }
@@ -110,8 +109,7 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatemen
   problem.objective.lambda = o.lambda.value_or(0.0);
   problem.plan.max_reweighted = inputs.frames.max_reweighted;
   if (o.sigma) {
-    problem.objective.lambda = TRY(recon::lambda_by_rule(a, problem.size.rows, problem.size.cols, problem.plan.solver,
-                                                         problem.objective.basis, *o.sigma));
+    problem.objective.lambda = TRY(recon::lambda_by_rule(a, problem.plan.solver, problem.objective.basis, *o.sigma));
   }
   std::optional<recon::Factor> factor;
   if (o.lambda_from_samples) {
@@ -119,8 +117,7 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatemen
     problem.objective.lambda = found.lambda;
     factor = std::move(found.factor);
   }
-  auto made = recon::Reconstructor::create(a, problem.size.rows, problem.size.cols, problem.objective, problem.plan,
-                                           std::move(factor), progress);
+  auto made = recon::Reconstructor::create(a, problem.objective, problem.plan, std::move(factor), progress);
   if (!made && made.error().code != ErrorCode::interrupted) made.error().place = place_of(o, made.error().place);
   return made;
 }

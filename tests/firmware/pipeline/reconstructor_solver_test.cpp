@@ -26,8 +26,9 @@ recon::Reconstructor make_reconstructor() {
   objective.lambda = 0.05;
   recon::Plan plan;
   plan.max_reweighted = 2;
-  const auto response = recon::Response::from_dense(channels, rows * cols, values).value();
-  return recon::Reconstructor::create(response, rows, cols, objective, plan).value();
+  const auto response =
+      recon::Response::from_dense(channels, rows * cols, values).value().with_image(rows, cols).value();
+  return recon::Reconstructor::create(response, objective, plan).value();
 }
 
 std::vector<float> samples(float level) {

@@ -25,7 +25,7 @@ struct Bounded {
 };
 
 double magnitudes(const SolverProblem& problem, BasisKind basis, const std::vector<double>& x) {
-  const Eigen::MatrixXd psi = recon::reference::basis_matrix(basis, problem.rows, problem.cols);
+  const Eigen::MatrixXd psi = recon::reference::basis_matrix(basis, problem.a.image_rows(), problem.a.image_cols());
   return (psi * Eigen::Map<const Eigen::VectorXd>(x.data(), psi.cols())).cwiseAbs().sum();
 }
 
@@ -43,14 +43,14 @@ double residual_of(const SolverProblem& problem, const Bounded& b, const std::ve
 /// ||W^(1/2)(A x - y)|| <= epsilon, for epsilon its own residual: one interior point serves both.
 Bounded bounded_problem(const SolverProblem& problem, recon::Objective objective, Random& random, bool weighted) {
   Bounded b;
-  std::vector<double> truth(static_cast<std::size_t>(problem.rows * problem.cols), 0.0);
+  std::vector<double> truth(static_cast<std::size_t>(problem.a.cols()), 0.0);
   for (double& v : truth) v = random.uniform() < 0.3 ? random.uniform(0.2, 1.0) : 0.0;
   b.y.resize(static_cast<std::size_t>(problem.a.rows()));
   b.weights.assign(b.y.size(), 1.0);
   problem.a.forward(truth, b.y);
   for (double& v : b.y) v = v == 0.0 ? 0.0 : static_cast<float>(v + 0.05 * random.normal());
   for (std::size_t m = 0; weighted && m < b.y.size(); m += 4) b.weights[m] = m % 8 == 0 ? 0.0 : 0.3F;
-  const auto best = recon::reference::solve_reference(problem.a, problem.rows, problem.cols, objective, b.y, b.weights);
+  const auto best = recon::reference::solve_reference(problem.a, objective, b.y, b.weights);
   REQUIRE(best.converged);
   b.epsilon = residual_of(problem, b, best.x);
   b.least = magnitudes(problem, objective.basis, best.x);
@@ -85,7 +85,7 @@ TEST_CASE("adm with epsilon: the bound holds and the l1 norm is the least, for r
         plan.iterations = 5000;
         plan.max_reweighted = problem.a.rows();
         plan.measure_gap = true;
-        const auto solver = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan);
+        const auto solver = recon::Reconstructor::create(problem.a, objective, plan);
         REQUIRE(solver.has_value());
         const SolvedFrame frame = solve_frame(*solver, to_float(b.y), to_float(b.weights));
         const std::vector<double> x(frame.x.begin(), frame.x.end());
@@ -116,13 +116,13 @@ TEST_CASE("adm as published never looks at epsilon in a step: its residual has n
   std::vector<float> last;
   for (const double share : {0.5, 1.0, 1.5}) {
     objective.epsilon = share * b.epsilon;
-    const auto solver = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan).value();
+    const auto solver = recon::Reconstructor::create(problem.a, objective, plan).value();
     const SolvedFrame frame = solve_frame(solver, to_float(b.y));
     CHECK(std::abs(frame.info.residual - *objective.epsilon) > 0.2 * *objective.epsilon);
     if (!last.empty()) CHECK(relative_difference(frame.x, last) < 1e-2);
     last = frame.x;
     plan.solver = SolverKind::adm;
-    const auto right = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan).value();
+    const auto right = recon::Reconstructor::create(problem.a, objective, plan).value();
     CHECK(solve_frame(right, to_float(b.y)).info.residual == doctest::Approx(*objective.epsilon).epsilon(1e-3));
     plan.solver = SolverKind::adm_as_published;
   }
@@ -134,19 +134,19 @@ TEST_CASE("adm as published is right where it was meant to be: on orthonormal ro
   for (Eigen::Index k = 0; k < raw.size(); ++k) raw.data()[k] = random.normal();
   const Eigen::MatrixXd q = recon::reference::singular_pairs(raw.transpose()).u;
   std::vector<double> values(q.data(), q.data() + q.size());  // column-major 48 x 20 is row-major 20 x 48
-  const auto a = recon::Response::from_dense(20, 48, values).value();
+  const auto a = recon::Response::from_dense(20, 48, values).value().with_image(6, 8).value();
   std::vector<double> truth(48, 0.0), y(20);
   truth[5] = 1.0;
   truth[30] = -0.6;
   a.forward(truth, y);
   recon::Objective objective;
   objective.lambda = 0.01;
-  const auto best = recon::reference::solve_reference(a, 6, 8, objective, std::vector<double>(y.begin(), y.end()));
+  const auto best = recon::reference::solve_reference(a, objective, std::vector<double>(y.begin(), y.end()));
   recon::Plan plan;
   plan.solver = SolverKind::adm_as_published;
   plan.precision = recon::Precision::f64;
   plan.iterations = 2000;
-  const SolvedFrame frame = solve_frame(recon::Reconstructor::create(a, 6, 8, objective, plan).value(), to_float(y));
+  const SolvedFrame frame = solve_frame(recon::Reconstructor::create(a, objective, plan).value(), to_float(y));
   CHECK(frame.info.health == recon::Health::converged);
   CHECK(frame.info.iterations < 1000);
   CHECK(frame.info.objective == doctest::Approx(best.objective).epsilon(1e-3));

@@ -42,7 +42,7 @@ Scene noisy_block(const Response& a, double sigma, std::uint64_t seed) {
 
 double error_at(const Response& a, const Scene& scene, Objective objective, const Plan& plan, double lambda) {
   objective.lambda = lambda;
-  const auto solver = Reconstructor::create(a, side, side, objective, plan);
+  const auto solver = Reconstructor::create(a, objective, plan);
   REQUIRE(solver.has_value());
   const SolvedFrame frame = solve_frame(*solver, scene.y);
   double apart = 0.0, size = 0.0;
@@ -57,7 +57,7 @@ double error_at(const Response& a, const Scene& scene, Objective objective, cons
 
 TEST_CASE("lambda by risk finds a better lambda than a start that is too small, whatever the draw") {
   Random random(2);
-  const Response a = random_response(random, 400, pixels, 0.3);
+  const Response a = random_response(random, 400, Picture{side, side}, 0.3);
   Objective objective;
   objective.basis = BasisKind::tv;
   objective.constraint = ConstraintKind::box;
@@ -66,7 +66,7 @@ TEST_CASE("lambda by risk finds a better lambda than a start that is too small, 
   plan.iterations = 200;
   for (const std::uint64_t seed : {3U, 4U, 5U}) {
     const Scene scene = noisy_block(a, 1.0, seed);
-    const auto found = lambda_by_risk(a, side, side, objective, plan, scene.y, 1.0);
+    const auto found = lambda_by_risk(a, objective, plan, scene.y, 1.0);
     REQUIRE(found.has_value());
     CHECK(found->trials.size() == 6);
     CHECK(found->trials.front().lambda == 0.1);
@@ -79,7 +79,7 @@ TEST_CASE("lambda by risk finds a better lambda than a start that is too small, 
 TEST_CASE("the risk is estimated without bias") {
   // Tikhonov is linear: its risk is known exactly, and the estimates scatter about it.
   Random random(6);
-  const Response a = random_response(random, 200, pixels, 0.3);
+  const Response a = random_response(random, 200, Picture{side, side}, 0.3);
   Objective objective;
   objective.lambda = 20.0;
   Plan plan;
@@ -89,10 +89,10 @@ TEST_CASE("the risk is estimated without bias") {
   double estimated = 0.0, actual = 0.0;
   for (std::uint64_t seed = 10; seed < 30; ++seed) {
     const Scene scene = noisy_block(a, sigma, seed);
-    const auto found = lambda_by_risk(a, side, side, objective, plan, scene.y, sigma);
+    const auto found = lambda_by_risk(a, objective, plan, scene.y, sigma);
     REQUIRE(found.has_value());
     estimated += found->trials.front().risk;
-    const auto solver = Reconstructor::create(a, side, side, objective, plan);
+    const auto solver = Reconstructor::create(a, objective, plan);
     const SolvedFrame frame = solve_frame(*solver, scene.y);
     std::vector<double> apart(pixel_count), samples(200);
     for (std::size_t n = 0; n < pixel_count; ++n) apart[n] = frame.x[n] - scene.truth[n];
@@ -104,17 +104,17 @@ TEST_CASE("the risk is estimated without bias") {
 
 TEST_CASE("lambda by risk keeps the start where the samples cannot tell") {
   Random random(7);
-  const Response a = random_response(random, 12, pixels, 0.3);
+  const Response a = random_response(random, 12, Picture{side, side}, 0.3);
   Objective objective;
   objective.basis = BasisKind::dct;
   objective.constraint = ConstraintKind::box;
   objective.lambda = 0.05;
   const Scene scene = noisy_block(a, 0.5, 8);
-  const auto found = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.5);
+  const auto found = lambda_by_risk(a, objective, {}, scene.y, 0.5);
   REQUIRE(found.has_value());
   CHECK(found->lambda == 0.05);
   CHECK(found->trials.size() == 6);
-  const auto noise_free = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.0);
+  const auto noise_free = lambda_by_risk(a, objective, {}, scene.y, 0.0);
   REQUIRE(noise_free.has_value());
   CHECK(noise_free->lambda == 0.05);
   CHECK(noise_free->trials.empty());
@@ -122,15 +122,15 @@ TEST_CASE("lambda by risk keeps the start where the samples cannot tell") {
 
 TEST_CASE("lambda by risk takes a stored factor and gives the same lambda with it") {
   Random random(9);
-  const Response a = random_response(random, 60, pixels, 0.3);
+  const Response a = random_response(random, 60, Picture{side, side}, 0.3);
   Objective objective;
   objective.basis = BasisKind::haar;
   objective.lambda = 0.01;
   const Scene scene = noisy_block(a, 0.3, 10);
-  const auto solver = Reconstructor::create(a, side, side, objective, {});
+  const auto solver = Reconstructor::create(a, objective, {});
   REQUIRE(solver.has_value());
-  const auto with = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.3, solver->factor());
-  const auto without = lambda_by_risk(a, side, side, objective, {}, scene.y, 0.3);
+  const auto with = lambda_by_risk(a, objective, {}, scene.y, 0.3, solver->factor());
+  const auto without = lambda_by_risk(a, objective, {}, scene.y, 0.3);
   REQUIRE(with.has_value());
   REQUIRE(without.has_value());
   CHECK(with->lambda == without->lambda);
@@ -140,12 +140,12 @@ TEST_CASE("lambda by risk takes a stored factor and gives the same lambda with i
 
 TEST_CASE("lambda by risk says what is wrong with its input") {
   Random random(11);
-  const Response a = random_response(random, 20, pixels, 0.3);
+  const Response a = random_response(random, 20, Picture{side, side}, 0.3);
   Objective objective;
   objective.lambda = 0.1;
   const std::vector<float> y(20, 1.0F);
   const auto code = [&](std::span<const float> samples, double sigma, const Progress& progress = {}) {
-    const auto found = lambda_by_risk(a, side, side, objective, {}, samples, sigma, std::nullopt, progress);
+    const auto found = lambda_by_risk(a, objective, {}, samples, sigma, std::nullopt, progress);
     REQUIRE_FALSE(found.has_value());
     return found.error().code;
   };

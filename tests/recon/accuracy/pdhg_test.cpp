@@ -64,7 +64,7 @@ recon::Plan plan_of(recon::SolverKind solver, int iterations, recon::Precision p
 
 recon::FrameInfo solved(const recon::Response& a, const Frame& frame, const recon::Plan& plan,
                         const std::vector<float>& weights = {}) {
-  const auto solver = recon::Reconstructor::create(a, 32, 32, frame.objective, plan);
+  const auto solver = recon::Reconstructor::create(a, frame.objective, plan);
   REQUIRE(solver.has_value());
   return solve_frame(*solver, frame.y, weights).info;
 }
@@ -123,11 +123,11 @@ TEST_CASE("the deflated step is the matrix it stands for at every level, by pari
   const recon::Response symmetric = wide_eye();
   for (const recon::Response& eye : {symmetric, without_symmetry(symmetric)}) {
     const recon::Response a = eye.select_rows(eye.seeing_rows());
-    const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a, 32, 32));
+    const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a));
     const int rank = 96;
     const double share = 0.25;
     const std::vector<double> penalties{20.0, 3.0, 70.0};
-    const auto modes = recon::leading_modes(a, 32, 32, rank, {}).value();
+    const auto modes = recon::leading_modes(a, rank, {}).value();
     REQUIRE(modes.size() == recon::modes_size(classes, rank));
     const auto tables = recon::dual_step_tables<float>(classes, modes, rank, penalties, share);
     REQUIRE(tables.view.levels == penalties.size());
@@ -193,20 +193,19 @@ TEST_CASE("stored modes give the same frames, and only those of the same rank") 
   const Frame frame = noisy_blocks(a);
   recon::Plan plan = plan_of(recon::SolverKind::pdhg, 10);
   plan.rank = 64;
-  const auto first = recon::Reconstructor::create(a, 32, 32, frame.objective, plan).value();
-  const recon::Factor wanted = recon::Reconstructor::wanted_factor(a, 32, 32, frame.objective, plan);
+  const auto first = recon::Reconstructor::create(a, frame.objective, plan).value();
+  const recon::Factor wanted = recon::Reconstructor::wanted_factor(a, frame.objective, plan);
   CHECK(first.factor().rank == 64);
   CHECK(wanted.rank == 64);
   CHECK(wanted.order == first.factor().order);
   CHECK(wanted.rho == first.factor().rho);
-  const auto again = recon::Reconstructor::create(a, 32, 32, frame.objective, plan, first.factor()).value();
+  const auto again = recon::Reconstructor::create(a, frame.objective, plan, first.factor()).value();
   CHECK(solve_frame(first, frame.y).x == solve_frame(again, frame.y).x);
   // One set of modes serves every basis and every step.
   recon::Objective tv = frame.objective;
   tv.basis = recon::BasisKind::tv;
   plan.rho = 3.0;
-  CHECK(recon::Reconstructor::create(a, 32, 32, tv, plan, first.factor()).has_value());
+  CHECK(recon::Reconstructor::create(a, tv, plan, first.factor()).has_value());
   plan.rank = 48;
-  CHECK(recon::Reconstructor::create(a, 32, 32, frame.objective, plan, first.factor()).error().code ==
-        hal::ErrorCode::stale);
+  CHECK(recon::Reconstructor::create(a, frame.objective, plan, first.factor()).error().code == hal::ErrorCode::stale);
 }

@@ -58,7 +58,7 @@ Response wide_fields(int side) {
       }
     }
   }
-  return Response::from_dense(rows, side * side, values).value();
+  return Response::from_dense(rows, side * side, values).value().with_image(side, side).value();
 }
 
 }  // namespace
@@ -66,12 +66,12 @@ Response wide_fields(int side) {
 TEST_CASE("rho by rule comes from A's norms, over columns or over differences") {
   Random random(1);
   for (const double density : {0.2, 1.0}) {
-    const Response a = random_response(random, 20, 8 * 6, density);
+    const Response a = random_response(random, 20, Picture{8, 6}, density);
     const Norms norms = norms_of(a, 8, 6);
     for (const BasisKind basis : {BasisKind::identity, BasisKind::dct, BasisKind::haar}) {
-      CHECK(resolve_rho(a, 8, 6, objective_of(basis), {}) == doctest::Approx(0.06 * norms.squares / 48.0));
+      CHECK(resolve_rho(a, objective_of(basis), {}) == doctest::Approx(0.06 * norms.squares / 48.0));
     }
-    CHECK(resolve_rho(a, 8, 6, objective_of(BasisKind::tv), {}) ==
+    CHECK(resolve_rho(a, objective_of(BasisKind::tv), {}) ==
           doctest::Approx(0.1 * std::sqrt(norms.squares * norms.differences) / 48.0));
   }
 }
@@ -89,20 +89,21 @@ TEST_CASE("rho by rule knows neither lambda nor the stored form, and scales as A
     });
     start.push_back(static_cast<std::int64_t>(values.size()));
   }
-  const Response tripled = Response::from_csr(dense.rows(), dense.cols(), start, columns, values).value();
+  const Response tripled =
+      Response::from_csr(dense.rows(), dense.cols(), start, columns, values).value().with_image(12, 12).value();
   for (const BasisKind basis : {BasisKind::dct, BasisKind::tv}) {
-    const double rho = resolve_rho(dense, 12, 12, objective_of(basis, 0.1), {});
-    CHECK(resolve_rho(dense, 12, 12, objective_of(basis, 10.0), {}) == rho);
-    CHECK(resolve_rho(tripled, 12, 12, objective_of(basis), {}) == doctest::Approx(9.0 * rho));
+    const double rho = resolve_rho(dense, objective_of(basis, 0.1), {});
+    CHECK(resolve_rho(dense, objective_of(basis, 10.0), {}) == rho);
+    CHECK(resolve_rho(tripled, objective_of(basis), {}) == doctest::Approx(9.0 * rho));
   }
   Plan given;
   given.rho = 0.7;
-  CHECK(resolve_rho(dense, 12, 12, objective_of(BasisKind::tv), given) == 0.7);
+  CHECK(resolve_rho(dense, objective_of(BasisKind::tv), given) == 0.7);
 }
 
 TEST_CASE("fields without an edge still have a rho") {
-  const Response even = Response::from_dense(2, 16, std::vector<double>(32, 1.0)).value();
-  CHECK(resolve_rho(even, 4, 4, objective_of(BasisKind::tv), {}) == doctest::Approx(0.06 * 2.0));
+  const Response even = Response::from_dense(2, 16, std::vector<double>(32, 1.0)).value().with_image(4, 4).value();
+  CHECK(resolve_rho(even, objective_of(BasisKind::tv), {}) == doctest::Approx(0.06 * 2.0));
 }
 
 TEST_CASE("with rho by rule total variation comes within a percent of its converged objective in 150 iterations") {
@@ -120,11 +121,11 @@ TEST_CASE("with rho by rule total variation comes within a percent of its conver
     Plan plan;
     plan.rho = rho;
     plan.iterations = iterations;
-    const auto solver = Reconstructor::create(a, side, side, objective_of(BasisKind::tv), plan);
+    const auto solver = Reconstructor::create(a, objective_of(BasisKind::tv), plan);
     REQUIRE(solver.has_value());
     return solve_frame(*solver, y).info.objective;
   };
-  const double rho = resolve_rho(a, side, side, objective_of(BasisKind::tv), {});
+  const double rho = resolve_rho(a, objective_of(BasisKind::tv), {});
   const double converged = objective_after(rho, 3000);
   CHECK(objective_after(rho, 150) < 1.01 * converged);
   for (const double factor : {0.03, 100.0}) {

@@ -50,7 +50,7 @@ double mean_error(const Response& a, double rho) {
     for (double& v : y) v += sigma * random.normal();
     Plan plan = plan_of(SolverKind::admm, rho);
     plan.iterations = 22;
-    const auto solver = Reconstructor::create(a, 16, 16, objective_of(BasisKind::identity, 4.0 * sigma), plan);
+    const auto solver = Reconstructor::create(a, objective_of(BasisKind::identity, 4.0 * sigma), plan);
     REQUIRE(solver.has_value());
     const SolvedFrame frame = solve_frame(*solver, to_float(y));
     double error = 0.0, size = 0.0;

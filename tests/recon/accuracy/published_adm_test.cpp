@@ -38,7 +38,7 @@ Tally tally(SolverKind kind, double acceptance_deg, double scale, int iterations
   plan.solver = kind;
   plan.iterations = iterations;
   plan.precision = recon::Precision::f64;
-  const auto solver = recon::Reconstructor::create(a, 16, 16, objective, plan).value();
+  const auto solver = recon::Reconstructor::create(a, objective, plan).value();
   Random random(5);
   Tally all;
   for (int t = 0; t < 20; ++t) {

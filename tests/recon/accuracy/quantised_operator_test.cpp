@@ -26,17 +26,17 @@ void check_solver(const SolverProblem& problem, const recon::Response& applied, 
   objective.constraint = recon::ConstraintKind::none;
   objective.lambda = 0.1;
   const std::vector<double> ones(y.size(), 1.0);
-  const auto best = recon::reference::solve_reference(applied, problem.rows, problem.cols, objective, y, ones);
+  const auto best = recon::reference::solve_reference(applied, objective, y, ones);
   REQUIRE(best.converged);
   recon::Plan plan;
   plan.solver = solver;
   plan.iterations = 5000;
   plan.op = kind;
-  const auto made = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan);
+  const auto made = recon::Reconstructor::create(problem.a, objective, plan);
   REQUIRE(made.has_value());
   CHECK(made->operating_point().op == kind);
   const SolvedFrame frame = solve_frame(*made, to_float(y));
-  const double reached = recon::reference::objective_value(applied, problem.rows, problem.cols, objective, y, ones,
+  const double reached = recon::reference::objective_value(applied, objective, y, ones,
                                                            std::vector<double>(frame.x.begin(), frame.x.end()));
   CHECK(reached <= best.objective * (1.0 + 1e-4) + 1e-7);
   CHECK(frame.info.objective == doctest::Approx(reached).epsilon(1e-4));
@@ -80,10 +80,10 @@ TEST_CASE("the factor of a rounded operator is that of the rounded matrix") {
   recon::Plan plan;
   plan.rho = 0.5;
   plan.op = OperatorKind::dense_runs_int8;
-  const auto made = recon::Reconstructor::create(a, 10, 10, objective, plan).value();
+  const auto made = recon::Reconstructor::create(a, objective, plan).value();
   const auto again =
-      recon::Reconstructor::create(recon::quantised(a, OperatorKind::dense_runs_int8), 10, 10, objective, plan).value();
+      recon::Reconstructor::create(recon::quantised(a, OperatorKind::dense_runs_int8), objective, plan).value();
   CHECK(made.factor().values == again.factor().values);
   plan.op = OperatorKind::dense_runs;
-  CHECK(recon::Reconstructor::create(a, 10, 10, objective, plan).value().factor().values != made.factor().values);
+  CHECK(recon::Reconstructor::create(a, objective, plan).value().factor().values != made.factor().values);
 }

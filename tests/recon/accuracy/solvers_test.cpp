@@ -31,7 +31,7 @@ struct Samples {
 /// A sparse scene with noise; a fifth of the channels weigh nought or a half when `weighted`, and the missing ones read
 /// NaN.
 Samples samples_of(const SolverProblem& problem, Random& random, bool weighted) {
-  std::vector<double> truth(static_cast<std::size_t>(problem.rows * problem.cols), 0.0);
+  std::vector<double> truth(static_cast<std::size_t>(problem.a.cols()), 0.0);
   Samples samples;
   samples.y.resize(static_cast<std::size_t>(problem.a.rows()));
   samples.weights.assign(samples.y.size(), 1.0);
@@ -62,7 +62,7 @@ double lambda_of(BasisKind basis, ConstraintKind constraint) {
 /// The objective that a solver's float32 picture has, in double.
 double reached_by(const SolverProblem& problem, const recon::Objective& objective, const Samples& samples,
                   const SolvedFrame& frame) {
-  return recon::reference::objective_value(problem.a, problem.rows, problem.cols, objective, samples.y, samples.weights,
+  return recon::reference::objective_value(problem.a, objective, samples.y, samples.weights,
                                            std::vector<double>(frame.x.begin(), frame.x.end()));
 }
 
@@ -77,7 +77,7 @@ bool check_against(const recon::reference::ReferenceResult& best, const SolverPr
   plan.iterations = iterations;
   plan.max_reweighted = problem.a.rows();
   plan.measure_gap = true;
-  const auto solver = recon::Reconstructor::create(problem.a, problem.rows, problem.cols, objective, plan);
+  const auto solver = recon::Reconstructor::create(problem.a, objective, plan);
   REQUIRE(solver.has_value());
   const SolvedFrame frame = solve_frame(*solver, to_float(samples.y), to_float(samples.weights));
   const double reached = reached_by(problem, objective, samples, frame);
@@ -118,8 +118,7 @@ TEST_CASE("l1 solvers reach the reference's objective to 1e-4 on every kind of p
         objective.basis = basis.kind;
         objective.constraint = constraint.kind;
         objective.lambda = lambda_of(basis.kind, constraint.kind);
-        const auto best = recon::reference::solve_reference(problem.a, problem.rows, problem.cols, objective, samples.y,
-                                                            samples.weights);
+        const auto best = recon::reference::solve_reference(problem.a, objective, samples.y, samples.weights);
         REQUIRE(best.converged);
         REQUIRE(best.gap <= 1e-10 * std::max(1.0, objective_of_nothing(samples)));
         for (const SolverKind kind : l1_solvers) {
@@ -165,7 +164,7 @@ TEST_CASE("what goes with what is what the solvers can do") {
         recon::Plan plan;
         plan.solver = solver.kind;
         const auto a = Response::from_dense(4, 6, std::vector<double>(24, 0.5));
-        const auto made = recon::Reconstructor::create(*a, 2, 3, objective, plan);
+        const auto made = recon::Reconstructor::create(a->with_image(2, 3).value(), objective, plan);
         CHECK(made.has_value() == supports(solver.kind, basis.kind, constraint.kind));
         if (made) continue;
         CHECK(made.error().code == hal::ErrorCode::usage);
@@ -182,14 +181,14 @@ TEST_CASE("what goes with what is what the solvers can do") {
 TEST_CASE("tikhonov is the closed form, in both precisions") {
   Random random(73);
   for (const auto precision : {recon::Precision::f32, recon::Precision::f64}) {
-    const Response a = random_response(random, 15, 24, 0.6);
+    const Response a = random_response(random, 15, Picture{4, 6}, 0.6);
     const auto y = to_float(random_vector(random, 15));
     recon::Objective objective;
     objective.lambda = 0.07;
     recon::Plan plan;
     plan.solver = recon::SolverKind::tikhonov;
     plan.precision = precision;
-    const auto solver = recon::Reconstructor::create(a, 4, 6, objective, plan);
+    const auto solver = recon::Reconstructor::create(a, objective, plan);
     REQUIRE(solver.has_value());
     const SolvedFrame frame = solve_frame(*solver, y);
     // Optimality: A'(A x - y) + lambda x = 0.
