@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/hal/error_check.hpp"
+
 using namespace compueye;
 using sim::render_built_in;
 
@@ -87,9 +89,7 @@ TEST_CASE("the Fig. 2 pattern has 19 pixels and is enlarged by whole factors") {
     for (int col = 0; col < 48; ++col) CHECK(large.at(row, col + 1) == pattern.at(row / 3, col / 3));
   }
   const auto small = render_built_in("fig2", 16, 15, 0);
-  REQUIRE_FALSE(small.has_value());
-  CHECK(small.error().code == hal::ErrorCode::out_of_range);
-  CHECK(small.error().sentence.find("16x15") != std::string::npos);
+  test::check_error(small, hal::ErrorCode::out_of_range, "scene 'fig2'", {"16x15"});
 }
 
 TEST_CASE("bars of one pixel alternate, dots are rare") {
@@ -100,20 +100,16 @@ TEST_CASE("bars of one pixel alternate, dots are rare") {
 
 TEST_CASE("an unknown scene is answered with the nearest name and the list") {
   const auto result = render_built_in("lineart", 16, 16, 0);
-  REQUIRE_FALSE(result.has_value());
-  CHECK(result.error().code == hal::ErrorCode::not_found);
-  CHECK(result.error().sentence.find("did you mean 'line-art'") != std::string::npos);
-  for (const sim::BuiltInScene& scene : sim::built_in_scenes()) {
-    CHECK(result.error().sentence.find(scene.name) != std::string::npos);
-  }
+  test::Named named{"lineart", "line-art?"};
+  for (const sim::BuiltInScene& scene : sim::built_in_scenes()) named.emplace_back(scene.name);
+  test::check_error(result, hal::ErrorCode::not_found, "scene", named);
   CHECK(render_built_in("", 16, 16, 0).error().code == hal::ErrorCode::not_found);
 }
 
 TEST_CASE("sizes beyond the range are refused by value") {
   for (const auto& [rows, cols] : {std::pair{0, 16}, std::pair{16, -1}, std::pair{8193, 16}}) {
     const auto result = render_built_in("dots", rows, cols, 0);
-    REQUIRE_FALSE(result.has_value());
-    CHECK(result.error().code == hal::ErrorCode::out_of_range);
-    CHECK(result.error().sentence.find(std::to_string(rows) + "x" + std::to_string(cols)) != std::string::npos);
+    test::check_error(result, hal::ErrorCode::out_of_range, "scene 'dots'",
+                      {std::to_string(rows) + "x" + std::to_string(cols)});
   }
 }

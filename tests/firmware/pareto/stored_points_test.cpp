@@ -8,6 +8,7 @@
 
 #include "tests/firmware/pareto/some_sweep.hpp"
 #include "tests/firmware/temporary_folder.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -46,20 +47,18 @@ TEST_CASE("points of another machine, build, response or constraint are stale, a
   const TemporaryFolder folder;
   const Sweep sweep = two_points();
   REQUIRE(store_points(folder.path(), sweep).has_value());
-  const auto refused = [&](const std::function<void(PointsKey&)>& change) {
+  const auto refused = [&](const std::function<void(PointsKey&)>& change, const compueye::test::Named& named) {
     PointsKey key = key_of(sweep);
     change(key);
     const auto loaded = load_points(folder.path(), key);
-    REQUIRE_FALSE(loaded.has_value());
-    CHECK(loaded.error().code == ErrorCode::stale);
-    return loaded.error().sentence;
+    compueye::test::check_error(loaded, ErrorCode::stale, points_path(folder.path()), named);
   };
-  CHECK(refused([](PointsKey& k) { k.machine.cpu = "Cortex-A76"; }).find("Cortex-A76") != std::string::npos);
-  CHECK(refused([](PointsKey& k) { k.machine.cores = 400; }).find("400 cores") != std::string::npos);
-  CHECK(refused([](PointsKey& k) { k.machine.build = "0.2.0 x"; }).find("another build") != std::string::npos);
-  CHECK(refused([](PointsKey& k) { ++k.response_hash; }).find("another response") != std::string::npos);
-  CHECK(refused([](PointsKey& k) { k.constraint = recon::ConstraintKind::none; }).find("none") != std::string::npos);
-  CHECK(refused([](PointsKey& k) { k.hi = 2.0; }).find("to 2") != std::string::npos);
+  refused([](PointsKey& k) { k.machine.cpu = "Cortex-A76"; }, {"Cortex-A76"});
+  refused([](PointsKey& k) { k.machine.cores = 400; }, {"400"});
+  refused([](PointsKey& k) { k.machine.build = "0.2.0+x"; }, {"0.2.0+x"});
+  refused([](PointsKey& k) { ++k.response_hash; }, {"response"});
+  refused([](PointsKey& k) { k.constraint = recon::ConstraintKind::none; }, {"none"});
+  refused([](PointsKey& k) { k.hi = 2.0; }, {"2"});
 }
 
 TEST_CASE("no points are no points") {
@@ -101,7 +100,5 @@ TEST_CASE("a version of another program is stale") {
   bytes.replace(bytes.find(version), version.size(), "\"version\": 99");
   folder.file("accuracy-and-time.json", bytes);
   const auto loaded = load_points(folder.path(), key_of(sweep));
-  REQUIRE_FALSE(loaded.has_value());
-  CHECK(loaded.error().code == ErrorCode::stale);
-  CHECK(loaded.error().sentence.find("99") != std::string::npos);
+  compueye::test::check_error(loaded, ErrorCode::stale, points_path(folder.path()), {"99"});
 }
