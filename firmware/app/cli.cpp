@@ -63,13 +63,15 @@ std::string unknown(std::string_view what, const std::string& given, const std::
 /// Empty when every option and command is known.
 std::string unknown_name(const CLI::App& app, const CLI::App& command, std::span<const Command* const> commands) {
   const std::vector<std::string> extras = app.remaining(true);
-  const auto option =
-      std::find_if(extras.begin(), extras.end(), [](const std::string& e) { return e.starts_with("-"); });
-  if (option != extras.end()) return unknown("an option", *option, option_names(command));
-  if (&command != &app || extras.empty()) return {};
-  std::vector<std::string> names;
-  for (const Command* each : commands) names.emplace_back(each->name);
-  return unknown("a command", extras.front(), names);
+  const auto dashed = [](const std::string& word) { return word.starts_with("-"); };
+  const auto word = std::find_if_not(extras.begin(), extras.end(), dashed);
+  if (&command == &app && word != extras.end()) {
+    std::vector<std::string> names;
+    for (const Command* each : commands) names.emplace_back(each->name);
+    return unknown("a command", *word, names);
+  }
+  const auto option = std::find_if(extras.begin(), extras.end(), dashed);
+  return option == extras.end() ? std::string() : unknown("an option", *option, option_names(command));
 }
 
 hal::Error usage_error(const CLI::App& app, const CLI::ParseError& error, std::span<const Command* const> commands) {

@@ -8,8 +8,10 @@
 #include <limits>
 #include <system_error>
 
+#include "firmware/eye/settings/setting.hpp"
 #include "firmware/text/nearest_name.hpp"
 #include "firmware/text/visible_text.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -35,6 +37,34 @@ std::optional<Halves> split(std::string_view text, char at) noexcept {
 }
 
 }  // namespace
+
+bool Overrides::has(std::string_view option) const {
+  return std::any_of(texts_.begin(), texts_.end(),
+                     [&](const auto& each) { return each.first->option == option && each.second; });
+}
+
+hal::Result<void> Overrides::apply(Board& board) const {
+  for (const auto& [setting, text] : texts_) {
+    if (text) TRY(set(board, *setting, *text, setting->option));
+  }
+  return {};
+}
+
+void OptionList::settings(std::string_view command, Overrides& overrides) {
+  for (const Setting* setting : settings_for(command)) {
+    add(std::string(setting->option), overrides.texts_[setting],
+        std::string(setting->meaning) + " (overrules the board's)")
+        .type(std::string(setting->value_name))
+        .where([setting](const std::string& text) {
+          const auto value = value_from(*setting, text, setting->option);
+          return value ? std::string() : value.error().sentence;
+        });
+  }
+}
+
+Option& OptionList::at(std::string_view name) {
+  return *std::find_if(rows_.begin(), rows_.end(), [&](const Option& row) { return row.name == name; });
+}
 
 Option& OptionList::put(std::string name, std::variant<Target, Switch> target, std::string meaning) {
   return rows_.emplace_back(Option{std::move(name), target, std::move(meaning), {}, {}, {}, {}, false});

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,22 @@
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
+
+struct Board;
+struct Setting;
+
+/// What a command line says otherwise than the board.
+class Overrides {
+ public:
+  /// The option ("--iterations") is given.
+  [[nodiscard]] bool has(std::string_view option) const;
+  /// The command line has the last word. Error usage at the option.
+  [[nodiscard]] hal::Result<void> apply(Board& board) const;
+
+ private:
+  friend class OptionList;
+  std::map<const Setting*, std::optional<std::string>> texts_;  // as typed
+};
 
 /// Complains about the text of a value, "is 'x', expected ..."; nothing to complain of: empty.
 using Check = std::function<std::string(const std::string&)>;
@@ -59,6 +76,12 @@ class OptionList {
   }
   /// --json, which every command has: see Session::print().
   Option& json(std::string meaning) { return flag("--json", wants_json_, std::move(meaning)); }
+
+  /// The options of all settings of a board that `command` takes; see firmware/eye/settings.
+  void settings(std::string_view command, Overrides& overrides);
+
+  /// One that was added.
+  [[nodiscard]] Option& at(std::string_view name);
 
   [[nodiscard]] const std::deque<Option>& rows() const noexcept { return rows_; }
   [[nodiscard]] bool wants_json() const noexcept { return wants_json_; }

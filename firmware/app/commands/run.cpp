@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "firmware/app/commands/frame_keeper.hpp"
@@ -68,7 +69,6 @@ class BoardRun {
 
  private:
   Result<void> prepare();
-  void overrule_board();
   Result<void> make_eye();
   Result<void> choose_eye(const recon::Progress& ask);
   [[nodiscard]] ReadyEye& eye() { return ladder_.eyes.front(); }
@@ -112,18 +112,9 @@ void BoardRun::note(const std::string& sentence) {
   session_.note(sentence);
 }
 
-/// The command line has the last word.
-void BoardRun::overrule_board() {
-  if (options_.distance_mm) board_.object.distance_mm = *options_.distance_mm;
-  if (options_.iterations) board_.plan.iterations = static_cast<int>(*options_.iterations);
-  if (options_.threads) board_.plan.threads = static_cast<int>(*options_.threads);
-  if (options_.sigma) board_.sigma = options_.sigma;
-  if (options_.sigma || options_.lambda) board_.lambda = options_.lambda;
-}
-
 Result<void> BoardRun::prepare() {
   board_ = TRY(load_board(options_.board));
-  overrule_board();
+  TRY(options_.overrides.apply(board_));
   TRY(try_outputs(options_));
   if (!options_.record.empty()) TRY(check_new_recording(options_.record));
   TRY(need(options_.sheet.empty() || knows_scene(), "--sheet",
@@ -158,7 +149,8 @@ Result<void> BoardRun::make_eye() {
 Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
   const LivingResponse living = TRY(living_response(board_, ask));
   // Iterations, threads or lambda by hand say what to run; nothing that was measured goes with them.
-  if (options_.deadline_ms && !options_.iterations && !options_.threads && !options_.lambda) {
+  const auto given = [this](std::string_view option) { return options_.overrides.has(option); };
+  if (options_.deadline_ms && !given("--iterations") && !given("--threads") && !given("--lambda")) {
     const auto points = load_points(board_.cache(), points_key(board_, living.response));
     if (points) {
       const PointChoice choice = choose_points(*points, board_.noise_sigma(), *options_.deadline_ms, period_ms());

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "drivers/recording/replay_source.hpp"
+#include "firmware/app/option_list.hpp"
 #include "firmware/app/session.hpp"
 #include "hal/result.hpp"
 
@@ -18,7 +19,6 @@ struct RunOptions {
   std::string scene;                   ///< empty: the board's
   std::int64_t seed = 0;               ///< of the noise, >= 0
   std::int64_t scene_seed = 0;         ///< of a built-in scene, >= 0
-  std::optional<double> distance_mm;   ///< of the object plane and the scene on it
   std::optional<double> scene_distance_mm;  ///< of the scene alone
   std::string out;                          ///< folder for pictures
   std::string format;                       ///< a word of sink_formats(); empty: png with `out`, else none
@@ -27,10 +27,7 @@ struct RunOptions {
   std::string replay;       ///< a recording instead of the board's eye; empty: none
   std::string replay_pace;  ///< fast or recorded; empty: fast
   std::string record;       ///< where the frames go besides; empty: nowhere
-  std::optional<std::int64_t> iterations;
-  std::optional<std::int64_t> threads;
-  std::optional<double> lambda;
-  std::optional<double> sigma;
+  Overrides overrides;      ///< iterations, threads, lambda, sigma, distance
   std::string sheet;
   std::string report;
   std::string table;  ///< header, row or both; empty: no table

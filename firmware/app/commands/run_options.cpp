@@ -6,7 +6,6 @@
 #include "firmware/app/commands/run.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/sinks/sink_list.hpp"
-#include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -54,7 +53,6 @@ void add_scene_options(OptionList& options, RunOptions& o) {
   options.add("--pace", o.replay_pace, "of a replay: fast (default; every frame is waited for) or recorded")
       .where(one_of({"fast", "recorded"}));
   options.add("--record", o.record, "file for the raw frames besides, for --replay; never overwritten");
-  options.add("--distance", o.distance_mm, "of the object from the lens tip in mm, known to the reconstruction");
   options.add("--scene-distance", o.scene_distance_mm,
               "of the scene alone in mm: the reconstruction goes on expecting it on the object plane");
 }
@@ -65,11 +63,8 @@ void add_solver_options(OptionList& options, RunOptions& o) {
               "pareto` has stored and that leaves a fifth of it as head-room, with faster ones to step down to "
               "while pictures are late; without stored points as many of the board's iterations as fit, by "
               "timing real solves first. Late pictures are published and counted");
-  options.add("--iterations", o.iterations,
-              "a frame (default: the board's); with --deadline the most, fitted by trial");
-  options.add("--threads", o.threads, "that share a frame's work (default: the board's); the same pictures");
-  options.add("--lambda", o.lambda, "weight of the penalty, by hand");
-  options.add("--sigma", o.sigma, "noise of one sample in white pixels, for lambda by rule").excludes("--lambda");
+  options.settings("run", o.overrides);
+  options.at("--sigma").excludes("--lambda");
 }
 
 void add_output_options(OptionList& options, RunOptions& o) {
@@ -103,19 +98,12 @@ Action declare(OptionList& options) {
 }  // namespace
 
 Result<void> RunOptions::check() const {
-  constexpr double longest_mm = 1e6, longest_ms = 1e9, most_frames = 1e15, most_iterations = 1e6, largest = 1e12;
+  constexpr double longest_mm = 1e6, longest_ms = 1e9, most_frames = 1e15;
   for (const auto& checked :
-       {within("--frames", frames, 0, false, most_frames),
-        within("--deadline", deadline_ms, 0, true, longest_ms),
+       {within("--frames", frames, 0, false, most_frames), within("--deadline", deadline_ms, 0, true, longest_ms),
         within("--seed", std::optional(seed), 0, false, 9e18),
         within("--scene-seed", std::optional(scene_seed), 0, false, 9e18),
-        within("--distance", distance_mm, 0, true, longest_mm),
         within("--scene-distance", scene_distance_mm, 0, true, longest_mm),
-        within("--iterations", iterations, 1, false, most_iterations),
-        within("--threads", threads, 1, false, recon::WorkerThreads::most),
-        within("--lambda", lambda, 0, false, largest),
-        within("--sigma", sigma, 0, false, largest),
-        need(!(lambda && sigma), "--sigma", "cannot go with --lambda: the noise is what lambda would be made from"),
         need(!(deadline_ms && lossless), "--deadline",
              "cannot go with --lossless, where frames wait for as long as it takes; leave one of them out"),
         need(!(deadline_ms && replays() && waits_for_frames()), "--deadline",
