@@ -14,6 +14,7 @@
 #include "firmware/eye/settings/setting.hpp"
 #include "recon/option_names.hpp"
 #include "tests/firmware/app_board_text.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -45,7 +46,7 @@ struct ScratchFolder {
     std::error_code ignored;
     fs::remove_all(path, ignored);
   }
-  void add_board(const std::string& name, const std::string& text = test::good_board) const {
+  void add_board(const std::string& name, const std::string& text = firmware::test::good_board) const {
     fs::create_directories(path / name);
     std::ofstream(path / name / "board.toml") << text;
   }
@@ -58,7 +59,7 @@ bool holds(const std::string& text, std::string_view part) {
 }  // namespace
 
 TEST_CASE("a good board is read in natural units, with every default") {
-  const auto board = parse_board(test::good_board, "board.toml");
+  const auto board = parse_board(firmware::test::good_board, "board.toml");
   REQUIRE_MESSAGE(board.has_value(), board.error().text());
   CHECK(board->name == "test-eye");
   CHECK(board->description.empty());
@@ -91,17 +92,17 @@ TEST_CASE("a good board is read in natural units, with every default") {
 }
 
 TEST_CASE("the noise follows from read noise and rounding unless it is given") {
-  const auto board = parse_board(test::good_board, "board.toml");
+  const auto board = parse_board(firmware::test::good_board, "board.toml");
   REQUIRE(board.has_value());
   CHECK(board->noise_sigma() == doctest::Approx(128.0 / 65536.0 * std::sqrt(13.0 / 12.0)));
-  const auto given =
-      parse_board(test::replaced(test::good_board, "constraint", "sigma = 0.25\nconstraint"), "board.toml");
+  const auto given = parse_board(
+      firmware::test::replaced(firmware::test::good_board, "constraint", "sigma = 0.25\nconstraint"), "board.toml");
   REQUIRE(given.has_value());
   CHECK(given->noise_sigma() == 0.25);
 }
 
 TEST_CASE("a board knows where each key stands") {
-  const auto board = parse_board(test::good_board, "b/board.toml");
+  const auto board = parse_board(firmware::test::good_board, "b/board.toml");
   REQUIRE(board.has_value());
   CHECK(board->place("scene", "default") == "b/board.toml:26");
   CHECK(board->place("eye", "lattice") == "b/board.toml:3");
@@ -111,7 +112,8 @@ TEST_CASE("a board knows where each key stands") {
 }
 
 TEST_CASE("sections may come as dotted keys, inline tables and with a byte order mark") {
-  const std::string dotted = test::replaced(test::good_board, "[source]\nkind = \"sim\"\nframe_rate_hz = 200\n", "");
+  const std::string dotted =
+      firmware::test::replaced(firmware::test::good_board, "[source]\nkind = \"sim\"\nframe_rate_hz = 200\n", "");
   REQUIRE_FALSE(dotted.empty());
   for (const std::string& text : {"source.kind = \"sim\"\nsource.frame_rate_hz = 20\n" + dotted,
                                   "source = {kind = \"sim\", frame_rate_hz = 20}\n" + dotted,
@@ -131,17 +133,17 @@ TEST_CASE("every lattice, solver, basis and constraint can be named") {
   for (const auto& named : recon::basis_names()) CHECK(name(named.kind) == named.name);
   for (const auto& named : recon::constraint_names()) CHECK(name(named.kind) == named.name);
 
-  const std::string plane =
-      test::replaced(test::good_board, "interommatidial_angle_deg = 1.5", "lattice = \"plane\"\npitch_mm = 0.2");
+  const std::string plane = firmware::test::replaced(firmware::test::good_board, "interommatidial_angle_deg = 1.5",
+                                                     "lattice = \"plane\"\npitch_mm = 0.2");
   const auto flat = parse_board(plane, "board.toml");
   REQUIRE_MESSAGE(flat.has_value(), flat.error().text());
   CHECK(flat->eye.lattice == hal::Lattice::plane);
   CHECK(flat->eye.pitch_mm == 0.2);
 
-  const auto linear =
-      parse_board(test::replaced(test::good_board, "constraint = \"box\"\nbox = [0, 1.5]",
-                                 "solver = \"tikhonov\"\nbasis = \"identity\"\nconstraint = \"none\"\nlambda = 0"),
-                  "board.toml");
+  const auto linear = parse_board(
+      firmware::test::replaced(firmware::test::good_board, "constraint = \"box\"\nbox = [0, 1.5]",
+                               "solver = \"tikhonov\"\nbasis = \"identity\"\nconstraint = \"none\"\nlambda = 0"),
+      "board.toml");
   REQUIRE_MESSAGE(linear.has_value(), linear.error().text());
   CHECK(linear->plan.solver == recon::SolverKind::tikhonov);
   CHECK(linear->objective.basis == recon::BasisKind::identity);
@@ -206,23 +208,27 @@ TEST_CASE("a board that is not there is answered with those that are") {
   REQUIRE_FALSE(near.has_value());
   CHECK(near.error().code == hal::ErrorCode::not_found);
   CHECK(near.error().place == (boards / "sim-8x9").string());
-  CHECK(holds(near.error().sentence, "did you mean '" + (boards / "sim-8x8").string() + "'?"));
+  CHECK(compueye::test::names(near.error().sentence, (boards / "sim-8x8").string() + "?"));
 
   const auto slash = load_board((boards / "sim-8x9").string() + "/");
   REQUIRE_FALSE(slash.has_value());
-  CHECK(holds(slash.error().sentence, "sim-8x8'?"));
+  CHECK(compueye::test::names(slash.error().sentence, (boards / "sim-8x8").string() + "?"));
   const auto file = load_board(boards / "sim-8x9" / "board.toml");
   REQUIRE_FALSE(file.has_value());
-  CHECK(holds(file.error().sentence, "sim-8x8'?"));
+  CHECK(compueye::test::names(file.error().sentence, (boards / "sim-8x8").string() + "?"));
 
   const auto far = load_board(boards / "something-else-entirely");
   REQUIRE_FALSE(far.has_value());
-  CHECK(holds(far.error().sentence, "are generic-hid, generic-usb, sim-120x120, sim-80x80, sim-8x8"));
+  for (const char* name : {"generic-hid", "generic-usb", "sim-120x120", "sim-80x80", "sim-8x8"}) {
+    CHECK(compueye::test::names(far.error().sentence, name));
+  }
 
   const auto above = load_board(boards);
   REQUIRE_FALSE(above.has_value());
   CHECK(above.error().place == boards.string());
-  CHECK(holds(above.error().sentence, "has no board.toml; it holds the boards generic-hid, generic-usb, sim-120x120"));
+  for (const char* name : {"board.toml", "generic-hid", "generic-usb", "sim-120x120"}) {
+    CHECK(compueye::test::names(above.error().sentence, name));
+  }
 
   const ScratchFolder scratch;
   fs::create_directories(scratch.path / "empty");
@@ -248,12 +254,12 @@ TEST_CASE("what cannot be a board file is refused by name") {
   scratch.add_board("huge", std::string((1U << 20U) + 1U, '#'));
   const auto huge = load_board(scratch.path / "huge");
   REQUIRE_FALSE(huge.has_value());
-  CHECK(holds(huge.error().sentence, "1048577 bytes"));
+  CHECK(compueye::test::names(huge.error().sentence, "1048577"));
 
   scratch.add_board("empty", "");
   const auto empty = load_board(scratch.path / "empty");
   REQUIRE_FALSE(empty.has_value());
-  CHECK(holds(empty.error().sentence, "section [board] is missing"));
+  CHECK(compueye::test::names(empty.error().sentence, "[board]"));
 
   REQUIRE(mkfifo((scratch.path / "pipe").c_str(), 0600) == 0);
   CHECK(load_board(scratch.path / "pipe").error().code == hal::ErrorCode::bad_format);
@@ -272,7 +278,7 @@ TEST_CASE("what cannot be a board file is refused by name") {
 
 TEST_CASE("an error in a file on disk names its path and line") {
   const ScratchFolder scratch;
-  scratch.add_board("bad", test::replaced(test::good_board, "rows = 8\n", "rows = 0\n"));
+  scratch.add_board("bad", firmware::test::replaced(firmware::test::good_board, "rows = 8\n", "rows = 0\n"));
   const auto bad = load_board(scratch.path / "bad");
   REQUIRE_FALSE(bad.has_value());
   CHECK(bad.error().place == (scratch.path / "bad" / "board.toml").string() + ":4");
