@@ -33,7 +33,10 @@ recon::Response without_symmetry(const recon::Response& a) {
     double* row = values.data() + static_cast<std::size_t>(m) * static_cast<std::size_t>(a.cols());
     a.for_each_in_row(m, [&](std::int32_t n, double v) { row[n] = v * (1.0 + 0.01 * (m % 7)); });
   }
-  return recon::Response::from_dense(a.rows(), a.cols(), values).value();
+  return recon::Response::from_dense(a.rows(), a.cols(), values)
+      .value()
+      .with_image(a.image_rows(), a.image_cols())
+      .value();
 }
 
 struct Frame {
