@@ -49,6 +49,10 @@ hal::Result<double> lambda_by_rule(const Response& response, SolverKind solver, 
                      "is " + std::to_string(sigma) + ", expected a finite number of 0 or more");
   }
   const bool by_atoms = solver == SolverKind::omp;
+  if (by_atoms && basis != BasisKind::identity && response.image_rows() == 0) {
+    return hal::fail(hal::ErrorCode::mismatch, "size",
+                     "of the picture is not known, the response has " + std::to_string(response.cols()) + " columns");
+  }
   const double scale = by_atoms ? median_atom_norm(response, basis) : lambda_scale(response, basis);
   const double size = scale > 0.0 ? scale : 1.0;
   if (solver == SolverKind::tikhonov || solver == SolverKind::tsvd) {

@@ -23,7 +23,8 @@ namespace compueye::recon {
 /// recon/lambda_by_risk.hpp improves on it from a frame's samples.
 ///
 /// All scale with y and A as lambda does. Without noise, or for an A that sees nothing, a millionth of the scale keeps
-/// lambda above zero. Error: out_of_range when sigma is negative or not finite.
+/// lambda above zero. Errors: out_of_range when sigma is negative or not finite, mismatch for omp in a basis when the
+/// response does not know its picture.
 [[nodiscard]] hal::Result<double> lambda_by_rule(const Response& response, SolverKind solver, BasisKind basis,
                                                  double sigma);
 

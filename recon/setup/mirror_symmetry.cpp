@@ -120,6 +120,7 @@ MirrorSymmetry find_mirror_symmetry(const Response& response) {
   Permutation identity(static_cast<std::size_t>(response.rows()));
   std::iota(identity.begin(), identity.end(), 0);
   MirrorSymmetry symmetry{{identity}, {{1}}};
+  if (response.image_cols() == 0) return symmetry;
   MirrorSearch search(response);
   const auto left_right = search.find({.left_right = true});
   const auto up_down = search.find({.up_down = true});
@@ -141,7 +142,7 @@ MirrorSymmetry find_mirror_symmetry(const Response& response) {
 }
 
 std::vector<std::int32_t> find_diagonal_symmetry(const Response& response) {
-  if (response.image_rows() != response.image_cols()) return {};
+  if (response.image_cols() == 0 || response.image_rows() != response.image_cols()) return {};
   return MirrorSearch(response).find({.transposed = true}).value_or(Permutation{});
 }
 

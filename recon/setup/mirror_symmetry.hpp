@@ -18,8 +18,8 @@ struct MirrorSymmetry {
   [[nodiscard]] std::size_t order() const noexcept { return permutations.size(); }
 };
 
-/// Looks for left-right and up-down symmetry of a response on its picture. Entries may differ by
-/// 1e-11 of the largest.
+/// Looks for left-right and up-down symmetry of a response on its picture; one that does not know its picture has none.
+/// Entries may differ by 1e-11 of the largest.
 [[nodiscard]] MirrorSymmetry find_mirror_symmetry(const Response& response);
 
 /// Looks for symmetry about the diagonal of a square picture: the row that is the transposed image of each row, its own

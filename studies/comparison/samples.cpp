@@ -27,7 +27,9 @@ using hal::Result;
 Result<recon::Response> response_of(const Board& board, const CompareOptions& o, const recon::Progress& progress) {
   recon::Response response =
       TRY(o.response.empty() ? calib::nominal_response(board.eye, board.object, progress) : read_response(o.response));
-  if (response.rows() == board.eye.ommatidia() && response.cols() == board.object.pixels()) return response;
+  if (response.rows() == board.eye.ommatidia() && response.cols() == board.object.pixels()) {
+    return std::move(response).with_image(board.object.rows, board.object.cols);
+  }
   return hal::fail(
       ErrorCode::mismatch, o.response,
       fmt::format("has {} rows and {} columns, expected {} and {}, the ommatidia and pixels of {}", response.rows(),

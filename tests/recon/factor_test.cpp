@@ -14,6 +14,7 @@
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
+using namespace compueye::recon;
 using namespace compueye::tests;
 
 namespace {
@@ -93,6 +94,13 @@ TEST_CASE("an eye with one mirror axis or none is recognised as such") {
   const recon::Response any = random_response(random, 23, Picture{5, 8}, 0.5);
   CHECK(recon::find_mirror_symmetry(any).order() == 1);
   check_against_direct(any, 0.1);
+}
+
+TEST_CASE("a response that does not know its picture has no symmetry") {
+  const auto white = Response::from_dense(2, 4, std::vector<double>(8, 1.0)).value();
+  CHECK(find_mirror_symmetry(white).order() == 1);
+  CHECK(find_diagonal_symmetry(white).empty());
+  CHECK(find_mirror_symmetry(white.with_image(2, 2).value()).order() > 1);
 }
 
 TEST_CASE("set-up can be interrupted and reports its progress") {

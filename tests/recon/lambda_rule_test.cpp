@@ -42,6 +42,16 @@ TEST_CASE("the rule's scales are a median column norm and a mean column sum") {
   CHECK(rule(a, BasisKind::dct, 0.5, SolverKind::omp) > 10.0 * rule(a, BasisKind::dct, 0.5));
 }
 
+TEST_CASE("only the norms of atoms need to know the picture of a response") {
+  const auto a = Response::from_dense(2, 4, {3.0, 0.0, 1.0, 2.0, 4.0, 2.0, 0.0, 1.0}).value();
+  const auto known = a.with_image(2, 2).value();
+  for (const BasisKind basis : {BasisKind::identity, BasisKind::dct, BasisKind::tv}) {
+    CHECK(rule(a, basis, 0.5) == rule(known, basis, 0.5));
+  }
+  CHECK(lambda_by_rule(a, SolverKind::omp, BasisKind::dct, 0.5).error().code == hal::ErrorCode::mismatch);
+  CHECK(rule(known, BasisKind::dct, 0.5, SolverKind::omp) > 0.0);
+}
+
 TEST_CASE("lambda follows the unit of the samples as the objective does") {
   Random random(1);
   const Response a = random_response(random, 30, Picture{1, 40}, 0.4);
