@@ -1,29 +1,17 @@
 #include "hal/accounting.hpp"
 
+#include <array>
 #include <numeric>
 
 namespace compueye::hal {
 
 std::string_view name(DropReason reason) noexcept {
-  switch (reason) {
-    case DropReason::device_overrun:
-      return "device overrun";
-    case DropReason::transport_gap:
-      return "transport gap";
-    case DropReason::corrupt:
-      return "corrupt";
-    case DropReason::too_few_channels:
-      return "too few channels";
-    case DropReason::superseded:
-      return "superseded";
-    case DropReason::solver_invalid:
-      return "solver invalid";
-    case DropReason::sink_failed:
-      return "sink failed";
-    case DropReason::stopped:
-      return "stopped";
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, drop_reason_count> names{"device overrun",   "transport gap", "corrupt",
+                                                                  "too few channels", "superseded",    "solver invalid",
+                                                                  "sink failed",      "stopped"};
+  static_assert(!names.back().empty());
+  const auto k = static_cast<std::size_t>(reason);
+  return k < names.size() ? names[k] : "unknown";
 }
 
 std::uint64_t FrameAccount::total_dropped() const noexcept {

@@ -18,7 +18,7 @@ enum class DropReason : std::uint8_t {
   sink_failed,       ///< the sink refused the frame
   stopped,           ///< still in a queue when the run was stopped
 };
-inline constexpr std::size_t drop_reason_count = 8;
+inline constexpr std::size_t drop_reason_count = static_cast<std::size_t>(DropReason::stopped) + 1;
 
 [[nodiscard]] std::string_view name(DropReason reason) noexcept;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -27,7 +28,7 @@ enum class FaultKind : std::uint8_t {
   duplicate_packets,  ///< the next `count` packets (reports) come twice
   overrun,            ///< the next `count` frames do not fit the device's memory
 };
-inline constexpr std::size_t fault_kind_count = 16;
+inline constexpr std::size_t fault_kind_count = static_cast<std::size_t>(FaultKind::overrun) + 1;
 
 [[nodiscard]] std::string_view name(FaultKind kind) noexcept;
 

@@ -20,16 +20,8 @@ std::size_t close_packet(const FrameHeader& header, std::span<std::byte> into) n
 }  // namespace
 
 int channels_in(SampleFormat format, std::size_t payload_bytes) noexcept {
-  const std::size_t bytes = std::min(payload_bytes, most_payload_bytes);
-  switch (format) {
-    case SampleFormat::u16:
-      return static_cast<int>(bytes / 2);
-    case SampleFormat::u12:
-      return static_cast<int>(bytes / 3 * 2 + bytes % 3 / 2);
-    case SampleFormat::i24:
-      return static_cast<int>(bytes / 3);
-  }
-  return 0;
+  const int bits = most_bits(format);
+  return bits == 0 ? 0 : static_cast<int>(std::min(payload_bytes, most_payload_bytes) * 8) / bits;
 }
 
 std::size_t encode_packet(FrameHeader header, std::span<const std::byte> payload, std::span<std::byte> into) noexcept {

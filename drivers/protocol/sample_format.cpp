@@ -9,7 +9,19 @@
 namespace compueye::protocol {
 namespace {
 
-constexpr std::array formats{SampleFormat::u16, SampleFormat::u12, SampleFormat::i24};
+struct FormatRow {
+  SampleFormat format;
+  std::string_view name;
+  int bits;  // that a code takes
+};
+constexpr std::array rows{FormatRow{SampleFormat::u16, "u16", 16}, FormatRow{SampleFormat::u12, "u12", 12},
+                          FormatRow{SampleFormat::i24, "i24", 24}};
+
+const FormatRow* row_of(SampleFormat format) noexcept {
+  const auto* const row =
+      std::find_if(rows.begin(), rows.end(), [&](const FormatRow& r) { return r.format == format; });
+  return row == rows.end() ? nullptr : row;
+}
 
 // Each unpacks and returns the OR of all codes as unsigned numbers: one bit above the depth, or a sign, shows in it.
 
@@ -97,50 +109,21 @@ void pack_i24(const std::int32_t* in, std::byte* out, std::size_t count, std::in
 }  // namespace
 
 std::string_view name(SampleFormat format) noexcept {
-  switch (format) {
-    case SampleFormat::u16:
-      return "u16";
-    case SampleFormat::u12:
-      return "u12";
-    case SampleFormat::i24:
-      return "i24";
-  }
-  return "unknown";
+  const FormatRow* const row = row_of(format);
+  return row == nullptr ? "unknown" : row->name;
 }
 
 bool known(SampleFormat format) noexcept {
-  return most_bits(format) > 0;
-}
-
-std::optional<SampleFormat> sample_format_from_name(std::string_view text) noexcept {
-  for (const SampleFormat format : formats) {
-    if (text == name(format)) return format;
-  }
-  return std::nullopt;
+  return row_of(format) != nullptr;
 }
 
 int most_bits(SampleFormat format) noexcept {
-  switch (format) {
-    case SampleFormat::u16:
-      return 16;
-    case SampleFormat::u12:
-      return 12;
-    case SampleFormat::i24:
-      return 24;
-  }
-  return 0;
+  const FormatRow* const row = row_of(format);
+  return row == nullptr ? 0 : row->bits;
 }
 
 std::size_t packed_bytes(SampleFormat format, std::size_t count) noexcept {
-  switch (format) {
-    case SampleFormat::u16:
-      return 2 * count;
-    case SampleFormat::u12:
-      return count / 2 * 3 + count % 2 * 2;
-    case SampleFormat::i24:
-      return 3 * count;
-  }
-  return 0;
+  return (static_cast<std::size_t>(most_bits(format)) * count + 7) / 8;
 }
 
 std::size_t unpack(SampleFormat format, std::span<const std::byte> packed, int bits, std::span<std::int32_t> codes,

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string_view>
 
@@ -14,11 +13,9 @@ enum class SampleFormat : std::uint8_t {
   u12 = 2,  ///< two codes in three bytes, least significant bit first; an odd last code takes two, high nibble 0
   i24 = 3,  ///< three bytes, two's complement, little-endian: the code minus 2^(bits-1)
 };
-inline constexpr std::size_t sample_format_count = 3;
 
 [[nodiscard]] std::string_view name(SampleFormat format) noexcept;  ///< "u16", "u12", "i24"
 [[nodiscard]] bool known(SampleFormat format) noexcept;             ///< a byte of the wire may be none of them
-[[nodiscard]] std::optional<SampleFormat> sample_format_from_name(std::string_view text) noexcept;
 
 /// The deepest codes a format can carry: 16, 12, 24; 0 for an unknown one.
 [[nodiscard]] int most_bits(SampleFormat format) noexcept;

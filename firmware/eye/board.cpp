@@ -6,9 +6,14 @@
 
 #include "firmware/eye/settings/setting.hpp"
 #include "firmware/eye/settings/toml_document.hpp"
+#include "firmware/eye/source_kinds.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
+
+bool SourceSettings::simulated() const noexcept {
+  return bus_of_kind(kind) == nullptr;
+}
 
 double Board::noise_sigma() const noexcept {
   return sigma.value_or(sensor.noise_sigma());

@@ -5,7 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include "firmware/eye/source_kinds.hpp"
 #include "hal/eye_geometry.hpp"
 #include "hal/result.hpp"
 #include "hal/sensor_settings.hpp"
@@ -19,7 +18,7 @@ struct SourceSettings {
   double frame_rate_hz = 0.0;  ///< > 0
   int fifo_frames = 0;         ///< frames a simulated device can hold before it loses one, >= 1
 
-  [[nodiscard]] bool simulated() const noexcept { return bus_of_kind(kind) == nullptr; }
+  [[nodiscard]] bool simulated() const noexcept;
 };
 
 struct SceneSettings {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "firmware/app/command.hpp"
+#include "firmware/eye/source_kinds.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
 #include "firmware/text/visible_text.hpp"

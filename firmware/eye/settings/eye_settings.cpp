@@ -5,6 +5,7 @@
 
 #include "firmware/eye/settings/field.hpp"
 #include "firmware/eye/settings/setting.hpp"
+#include "firmware/eye/source_kinds.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 #include <vector>
 
 #include "tests/drivers/protocol/wire_samples.hpp"
@@ -97,7 +99,7 @@ TEST_CASE("sizes that do not fit are refused and write nothing") {
 }
 
 TEST_CASE("formats have names") {
-  for (const SampleFormat format : all_formats) CHECK(sample_format_from_name(name(format)) == format);
-  CHECK_FALSE(sample_format_from_name("u13"));
+  std::set<std::string_view> names;
+  for (const SampleFormat format : all_formats) CHECK(names.insert(name(format)).second);
   CHECK(name(static_cast<SampleFormat>(0)) == "unknown");
 }
