@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "recon/reconstructor.hpp"
 
@@ -13,6 +15,23 @@ struct Named {
   std::string_view name;
   Kind kind;
 };
+
+/// The words of a table, in its order.
+template <class Kind>
+[[nodiscard]] std::vector<std::string_view> words_of(std::span<const Named<Kind>> table) {
+  std::vector<std::string_view> words;
+  for (const Named<Kind>& named : table) words.push_back(named.name);
+  return words;
+}
+
+/// What a word of the table stands for; nothing for any other.
+template <class Kind>
+[[nodiscard]] std::optional<Kind> kind_of(std::span<const Named<Kind>> table, std::string_view word) noexcept {
+  for (const Named<Kind>& named : table) {
+    if (named.name == word) return named.kind;
+  }
+  return std::nullopt;
+}
 
 /// Without adm as published, which is no solver to choose but one to be shown beside the others.
 [[nodiscard]] std::span<const Named<SolverKind>> solver_names() noexcept;

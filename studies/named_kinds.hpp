@@ -19,10 +19,9 @@ namespace compueye::firmware {
 template <class Kind>
 [[nodiscard]] hal::Result<std::vector<Kind>> kinds_of(const char* option, const std::vector<std::string>& words,
                                                       std::span<const recon::Named<Kind>> table) {
-  std::vector<std::string_view> known;
-  for (const auto& named : table) known.push_back(named.name);
+  const std::vector<std::string_view> known = recon::words_of(table);
   for (const std::string& word : words) {
-    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+    if (recon::kind_of(table, word)) continue;
     return hal::fail(
         hal::ErrorCode::usage, option,
         fmt::format("is '{}', expected one of {}{}", word, fmt::join(known, ", "), suggestion(word, known)));

@@ -6,6 +6,7 @@
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/pipeline/correction.hpp"
 #include "hal/clock.hpp"
+#include "hal/try.hpp"
 #include "recon/conventional_image.hpp"
 
 namespace compueye::firmware {
@@ -23,17 +24,14 @@ recon::Response without_weak_rows(const recon::Response& response) {
 
 hal::Result<std::vector<float>> one_frame(const Board& narrow, const sim::Scene& scene, std::uint64_t seed) {
   hal::VirtualClock clock;
-  auto eye = sim::SimulatedEye::create(simulated_eye_settings(narrow, scene, seed), clock);
-  if (!eye) return tl::unexpected(eye.error());
-  auto correction = Correction::create(correction_settings(narrow), (*eye)->describe());
-  if (!correction) return tl::unexpected(correction.error());
-  if (auto started = (*eye)->start(); !started) return tl::unexpected(started.error());
-  const auto block = (*eye)->read(0);
-  if (!block) return tl::unexpected(block.error());
+  const auto eye = TRY(sim::SimulatedEye::create(simulated_eye_settings(narrow, scene, seed), clock));
+  Correction correction = TRY(Correction::create(correction_settings(narrow), eye->describe()));
+  TRY(eye->start());
+  const hal::SampleBlock block = TRY(eye->read(0));
   const auto channels = static_cast<std::size_t>(narrow.eye.ommatidia());
   std::vector<float> y(channels), weights(channels);
   // Whether the frame is usable does not matter here: saturation is out of reach for so narrow an eye.
-  correction->apply(*block, y, weights);
+  correction.apply(block, y, weights);
   return y;
 }
 
@@ -45,14 +43,11 @@ hal::Result<hal::Image> conventional_picture(const Board& board, const sim::Scen
     return hal::fail(hal::ErrorCode::unsupported, board.name,
                      "has a lattice without an interommatidial angle, so there is no conventional eye to compare with");
   }
-  const auto nominal = calib::nominal_response(narrow->eye, narrow->object);
-  if (!nominal) return tl::unexpected(nominal.error());
-  const auto image = recon::ConventionalImage::create(without_weak_rows(*nominal));
-  if (!image) return tl::unexpected(image.error());
-  const auto y = one_frame(*narrow, scene, seed);
-  if (!y) return tl::unexpected(y.error());
+  const recon::Response nominal = TRY(calib::nominal_response(narrow->eye, narrow->object));
+  const auto image = TRY(recon::ConventionalImage::create(without_weak_rows(nominal)));
+  const std::vector<float> y = TRY(one_frame(*narrow, scene, seed));
   hal::Image picture(narrow->object.rows, narrow->object.cols);
-  image->render(*y, picture.pixels);
+  image.render(y, picture.pixels);
   return picture;
 }
 

@@ -4,11 +4,20 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/nominal.hpp"
 #include "hal/try.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/setup/quantised_response.hpp"
 
 namespace compueye::firmware {
+
+hal::Result<LivingResponse> living_response(const Board& board, const recon::Progress& progress) {
+  recon::Response response = TRY(calib::nominal_response(board.eye, board.object, progress));
+  std::vector<std::uint8_t> sees(static_cast<std::size_t>(response.rows()), 0);
+  for (const std::int32_t m : response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
+  if (!board.sensor.dead.empty()) response = response.without_rows(board.sensor.dead);
+  return LivingResponse{std::move(response), std::move(sees)};
+}
 
 hal::Result<LambdaChoice> choose_lambda(const recon::Response& response, recon::SolverKind solver,
                                         recon::BasisKind basis, std::optional<double> by_hand, double sigma) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "firmware/files/png.hpp"
+#include "hal/try.hpp"
 #include "sim/built_in_scenes.hpp"
 
 namespace compueye::firmware {
@@ -46,15 +47,11 @@ sim::Scene fitted(const hal::ObjectPlane& object, std::string name, hal::Image p
 }
 
 hal::Result<sim::Scene> scene_from_file(const hal::ObjectPlane& object, const fs::path& path) {
-  auto picture = read_png(path);
-  if (!picture) return tl::unexpected(std::move(picture.error()));
-  return fitted(object, path.stem().string(), std::move(*picture));
+  return fitted(object, path.stem().string(), TRY(read_png(path)));
 }
 
 hal::Result<sim::Scene> built_in_scene(const hal::ObjectPlane& object, const std::string& name, std::uint64_t seed) {
-  auto picture = sim::render_built_in(name, object.rows, object.cols, seed);
-  if (!picture) return tl::unexpected(std::move(picture.error()));
-  return sim::scene_on(object, name, std::move(*picture));
+  return sim::scene_on(object, name, TRY(sim::render_built_in(name, object.rows, object.cols, seed)));
 }
 
 }  // namespace

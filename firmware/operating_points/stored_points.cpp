@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -204,12 +203,10 @@ struct Reader {
     } else if constexpr (std::is_same_v<Value, std::optional<recon::OperatorKind>>) {
       value = from.is_null() ? Value{} : Value(operator_from(from));
     } else if constexpr (Worded<Value>) {
-      const auto table = words(value);
       const auto word = from.get<std::string>();
-      const auto found =
-          std::find_if(table.begin(), table.end(), [&](const auto& named) { return named.name == word; });
-      if (found == table.end()) throw std::out_of_range(fmt::format("{} is '{}'", key, word));
-      value = found->kind;
+      const auto kind = recon::kind_of(words(value), word);
+      if (!kind) throw std::out_of_range(fmt::format("{} is '{}'", key, word));
+      value = *kind;
     } else if constexpr (IsList<Value>::value) {
       for (const Json& item : from) read(item, key, value.emplace_back());
     } else if constexpr (requires(Reader r) { members(r, value); }) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -33,21 +32,6 @@ inline std::array<double, 2> pair_of(const SettingValue& value) {
   }
   const auto& real = std::get<std::vector<double>>(value);
   return {real[0], real[1]};
-}
-
-template <class Kind>
-std::vector<std::string_view> words_of(std::span<const recon::Named<Kind>> names) {
-  std::vector<std::string_view> list;
-  for (const recon::Named<Kind>& named : names) list.push_back(named.name);
-  return list;
-}
-
-/// Of a word that is in the table, as a checked choice is.
-template <class Kind>
-Kind kind_of(std::span<const recon::Named<Kind>> names, std::string_view word) {
-  const auto found =
-      std::find_if(names.begin(), names.end(), [&](const recon::Named<Kind>& named) { return named.name == word; });
-  return found == names.end() ? Kind{} : found->kind;
 }
 
 /// How a member of a board becomes a value and back, and the type of its row.
@@ -129,15 +113,15 @@ Row field(std::string_view name, std::string_view meaning) {
 template <auto Names, auto... Path>
 Row choice_field(std::string_view name, std::string_view meaning) {
   return Row(name, meaning)
-      .one_of(words_of(Names()))
-      .stored(
-          [](Board& board, const SettingValue& value) { member_of<Path...>(board) = kind_of(Names(), text_of(value)); },
-          [](const Board& board) -> std::optional<SettingValue> {
-            for (const auto& named : Names()) {
-              if (named.kind == member_of<Path...>(board)) return SettingValue(std::string(named.name));
-            }
-            return std::nullopt;
-          });
+      .one_of(recon::words_of(Names()))
+      .stored([](Board& board,
+                 const SettingValue& value) { member_of<Path...>(board) = *recon::kind_of(Names(), text_of(value)); },
+              [](const Board& board) -> std::optional<SettingValue> {
+                for (const auto& named : Names()) {
+                  if (named.kind == member_of<Path...>(board)) return SettingValue(std::string(named.name));
+                }
+                return std::nullopt;
+              });
 }
 
 /// The rows of a section of board.toml.

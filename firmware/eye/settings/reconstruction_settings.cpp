@@ -26,14 +26,13 @@ std::span<const recon::Named<bool>> start_names() {
 }
 
 std::vector<std::string_view> operator_words() {
-  std::vector<std::string_view> list = words_of(recon::operator_names());
+  std::vector<std::string_view> list = recon::words_of(recon::operator_names());
   list.insert(list.begin(), "auto");
   return list;
 }
 
 void store_operator(Board& b, const V& v) {
-  b.plan.op = std::nullopt;
-  if (text_of(v) != "auto") b.plan.op = kind_of(recon::operator_names(), text_of(v));
+  b.plan.op = recon::kind_of(recon::operator_names(), text_of(v));  // "auto" is none of them
 }
 std::optional<V> show_operator(const Board& b) {
   return V{b.plan.op ? std::string(recon::name(*b.plan.op)) : "auto"};
