@@ -86,13 +86,13 @@ TEST_CASE("every command refuses an option that it has not, and a value where a 
   const ScratchProblem problem;
   for (const firmware::Command* command : firmware::commands()) {
     CAPTURE(command->name);
-    check_refused(problem, std::string(command->name) + " --nonsense", 2, {"'--nonsense'"});
+    check_refused(problem, std::string(command->name) + " --nonsense", hal::ErrorCode::usage, "", {"'--nonsense'"});
     const std::string given = std::string(command->name) + " " + failing.at(command->name).arguments;
     for (const firmware::Option& option : options_of(*command)) {
       const auto* target = std::get_if<firmware::Target>(&option.target);
       if (target == nullptr || std::holds_alternative<std::string*>(*target)) continue;
       if (std::holds_alternative<std::vector<std::string>*>(*target)) continue;
-      check_refused(problem, given + " " + option.name + " many", 2, {option.name, "many"});
+      check_refused(problem, given + " " + option.name + " many", hal::ErrorCode::usage, "", {option.name, "many"});
     }
   }
 }
@@ -112,7 +112,7 @@ TEST_CASE("every command fails as an object under --json: wrong usage and what g
     const auto error = error_of(run_compueye(name + " " + later.arguments + " --json", problem.folder().path()), 1);
     CHECK(error["code"] == "not found");
     CHECK(error["place"] == later.place);
-    check_refused(problem, name + " " + later.arguments, 1, {later.place});
+    check_refused(problem, name + " " + later.arguments, hal::ErrorCode::not_found, later.place, {});
   }
 }
 
