@@ -6,6 +6,8 @@
 #include <set>
 #include <sstream>
 
+#include "calib/nominal.hpp"
+#include "firmware/files/response_file.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_table.hpp"
 #include "studies/comparison/comparison_files.hpp"
@@ -74,6 +76,26 @@ TEST_CASE("a comparison says how many threads shared a frame: the options' or th
   REQUIRE(of_options.has_value());
   CHECK(of_options->threads == 4);
   CHECK(of_options->rows.front().picture.pixels == of_board->rows.front().picture.pixels);
+}
+
+TEST_CASE(
+    "the rows of a file that does not say which picture it is of are those of the board's plane, in every basis") {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder / "A.npy").string();
+  const Board board = test::board_8x8();
+  const auto nominal = calib::nominal_response(board.eye, board.object, test::go_on).value();
+  REQUIRE(write_response(file, nominal).has_value());
+  CompareOptions options = quick({"admm"}, {});
+  const auto of_board = compared(options);
+  options.response = file;
+  const auto of_file = compared(options);
+  REQUIRE(of_board.has_value());
+  REQUIRE(of_file.has_value());
+  REQUIRE(of_file->rows.size() == recon::basis_names().size());
+  for (std::size_t r = 0; r < of_file->rows.size(); ++r) {
+    // float32 entries of the file round some of the covered fractions.
+    CHECK(of_file->rows[r].quality.nmse == doctest::Approx(of_board->rows[r].quality.nmse).epsilon(1e-3));
+  }
 }
 
 TEST_CASE("the CSV has the figures of every row and a line for the conventional eye, all with the same columns") {
