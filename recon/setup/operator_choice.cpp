@@ -88,8 +88,9 @@ hal::Result<OperatorChoice> choose_operator(const Response& seeing, std::optiona
     least = runs;
     plain = OperatorKind::dense_runs;
   }
+  if (!running_sums_fit(seeing.image_rows(), seeing.image_cols())) return as_asked(seeing, plain);
   const auto taps = static_cast<double>(running_sum_taps(seeing));
-  if (running_sums_fit(seeing.image_rows(), seeing.image_cols()) && taps / 4.0 + pixels < least) {
+  if (taps / 4.0 + pixels < least) {
     OperatorChoice sums = running_sums_of(seeing, taps);
     if (sums.kind != OperatorKind::running_sums || taps + pixels < least) return sums;
   }

@@ -123,7 +123,7 @@ std::vector<std::uint32_t> banded(const std::vector<std::uint32_t>& lane_first,
 
 bool running_sums_fit(int image_rows, int image_cols) noexcept {
   const std::int64_t half_rows = (image_rows + 1) / 2, half_cols = (image_cols + 1) / 2;
-  return half_rows * half_cols <= 65536;
+  return image_rows > 0 && image_cols > 0 && half_rows * half_cols <= 65536;
 }
 
 int rows_sharing_tables(int image_rows, int image_cols, const MirrorSymmetry& symmetry,

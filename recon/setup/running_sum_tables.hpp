@@ -27,7 +27,7 @@ struct RunningSumTables {
   }
 };
 
-/// Whether 16 bits can number the pixels of a quadrant.
+/// Whether the picture is known, and 16 bits can number the pixels of a quadrant.
 [[nodiscard]] bool running_sums_fit(int image_rows, int image_cols) noexcept;
 
 /// How many rows can share a table: 8 where `symmetry` has all four images, `transposed` is what

@@ -33,6 +33,8 @@ Response narrow_eye(int grid, int image_side) {
   }
   return Response::from_csr(grid * grid, image_side * image_side, std::move(row_start), std::move(columns),
                             std::move(values))
+      .value()
+      .with_image(image_side, image_side)
       .value();
 }
 
@@ -63,7 +65,7 @@ TEST_CASE("every pixel shows the nearest seeing ommatidium") {
     CAPTURE(grid);
     Response eye = narrow_eye(grid, side);
     if (grid == 1) {
-      eye = Response::from_dense(1, 16, std::vector<double>(16, 0.5)).value();
+      eye = Response::from_dense(1, 16, std::vector<double>(16, 0.5)).value().with_image(4, 4).value();
     }
     const auto image = ConventionalImage::create(eye).value();
     REQUIRE(image.source_rows().size() == static_cast<std::size_t>(side * side));

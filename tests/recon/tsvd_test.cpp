@@ -117,7 +117,7 @@ TEST_CASE("tsvd with weights is the weighted fit within the leading pairs") {
 
 TEST_CASE("the rank follows lambda where none is given, and impossible ones are refused by name") {
   Random random(21);
-  const auto a = random_response(random, 12, 36, 0.6);
+  const auto a = random_response(random, 12, Picture{6, 6}, 0.6);
   const Eigen::VectorXd s = recon::reference::singular_pairs(dense_matrix(a)).values;
   const auto by_lambda = recon::singular_modes(a, 0, s[4] * s[4] * 0.999, {});
   REQUIRE(by_lambda.has_value());
