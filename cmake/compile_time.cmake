@@ -1,0 +1,27 @@
+# What keeps the compiler's time short. A precompiled header serves all targets of one set of flags: hal's those that
+# are optimised as the build type says, text's those of compueye_compile_quickly(). It hides
+# includes that are missing, and clang-tidy cannot read the compiler's: the presets debug, asan and fuzz build without
+# (CMAKE_DISABLE_PRECOMPILE_HEADERS).
+set(COMPUEYE_STANDARD_HEADERS
+    <algorithm> <array> <atomic> <charconv> <chrono> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory>
+    <mutex> <numbers> <numeric> <optional> <span> <string> <string_view> <system_error> <utility> <vector>
+    <tl/expected.hpp>)
+
+# A folder whose code runs once, or only calls what takes the time: there the compiler is not to spend its own on
+# optimising, nor in a sanitizer's build on checks of every access.
+macro(compueye_compile_quickly)
+  if(COMPUEYE_SANITIZE)
+    add_compile_options(-O0)
+  elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
+    add_compile_options(-O1)
+  endif()
+endmacro()
+
+# A cache that is not told to keeps nothing of what uses a precompiled header.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(-fpch-preprocess)
+endif()
+if(CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache$")
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+                                  ${CMAKE_CXX_COMPILER_LAUNCHER})
+endif()
