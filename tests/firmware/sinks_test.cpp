@@ -130,6 +130,20 @@ TEST_CASE("every row of the list makes what it says, and what lies in the folder
   CHECK((find_sink("jpeg") == nullptr));
 }
 
+TEST_CASE("png16 keeps more of a brightness than png") {
+  const hal::VirtualClock clock;
+  const auto kept = [&](std::string_view name) {
+    const TemporaryFolder folder;
+    const auto sink = find_sink(name)->make(folder / "made", clock);
+    REQUIRE(sink->open({1, 2}).has_value());
+    REQUIRE(sink->write(frame_of({0.3F, 0.3F}, {1, 2})).has_value());
+    REQUIRE(sink->close().has_value());
+    return read_png(std::filesystem::directory_iterator(folder / "made")->path()).value().pixels[0];
+  };
+  CHECK(kept("png16") == doctest::Approx(0.3).epsilon(3e-5));
+  CHECK(kept("png") == doctest::Approx(77.0 / 255.0).epsilon(1e-6));
+}
+
 TEST_CASE("the formats are the rows that keep files, and none") {
   const std::vector<std::string_view> formats = sink_formats();
   CHECK(formats == std::vector<std::string_view>{"png", "png16", "npy", "none"});
