@@ -7,10 +7,11 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <system_error>
 #include <utility>
 
-#include "firmware/files/file_error.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -20,22 +21,23 @@ constexpr std::string_view cannot_write = "cannot be written";
 std::atomic<unsigned> partial_counter{0};
 
 // The suffix must fit behind the longest name a file system allows (255 bytes).
-std::filesystem::path partial_name(const std::filesystem::path& target) {
-  std::string name = target.filename().string();
+std::string partial_name(const std::filesystem::path& target) {
+  std::string name = target.filename();
   const std::string suffix = "." + std::to_string(::getpid()) + "-" + std::to_string(partial_counter++) + ".partial";
   if (name.size() + suffix.size() > 255 && name.size() <= 255) name.resize(255 - suffix.size());
   return target.parent_path() / (name + suffix);
 }
 
 // Without this a power cut may undo the rename. A file system that cannot do it has nothing better to offer.
-void flush_folder(const std::filesystem::path& folder) noexcept {
+void flush_folder_of(const std::filesystem::path& file) noexcept {
+  const std::filesystem::path folder = file.parent_path();
   const FileDescriptor fd(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (fd.is_open()) static_cast<void>(::fsync(fd.get()));
 }
 
 }  // namespace
 
-hal::Result<AtomicFile> AtomicFile::create(const std::filesystem::path& path) {
+hal::Result<AtomicFile> AtomicFile::create(const std::string& path) {
   if (path.empty()) return hal::fail(hal::ErrorCode::usage, "output file", "has an empty name, expected a file name");
   AtomicFile file;
   file.target_ = path;
@@ -45,7 +47,7 @@ hal::Result<AtomicFile> AtomicFile::create(const std::filesystem::path& path) {
   }
   struct stat status {};
   if (::stat(file.target_.c_str(), &status) != 0) {
-    if (path.filename().empty()) return tl::unexpected(file_error(EISDIR, path, cannot_write));
+    if (path.back() == '/') return tl::unexpected(file_error(EISDIR, path, cannot_write));
     return file.open_partial(std::nullopt).map([&] { return std::move(file); });
   }
   if (S_ISDIR(status.st_mode)) return tl::unexpected(file_error(EISDIR, path, cannot_write));
@@ -72,12 +74,6 @@ hal::Result<void> AtomicFile::open_partial(std::optional<mode_t> permissions) {
   }
   return tl::unexpected(file_error(errno, target_, cannot_write));
 }
-
-AtomicFile::AtomicFile(AtomicFile&& other) noexcept
-    : file_(std::move(other.file_)),
-      target_(std::move(other.target_)),
-      partial_(std::move(other.partial_)),
-      replaces_(other.replaces_) {}
 
 AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
   if (this != &other) {
@@ -106,7 +102,7 @@ hal::Result<void> AtomicFile::write(std::string_view text) {
 
 hal::Result<void> AtomicFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (!replaces_) {
-    return hal::fail(hal::ErrorCode::unsupported, target_.string(),
+    return hal::fail(hal::ErrorCode::unsupported, target_,
                      "is a device or a pipe, expected a file, because its beginning is written last");
   }
   while (!bytes.empty()) {
@@ -121,7 +117,7 @@ hal::Result<void> AtomicFile::overwrite(std::uint64_t offset, std::span<const st
 
 hal::Result<void> AtomicFile::truncate(std::uint64_t size) {
   if (!replaces_) {
-    return hal::fail(hal::ErrorCode::unsupported, target_.string(), "is a device or a pipe, expected a file");
+    return hal::fail(hal::ErrorCode::unsupported, target_, "is a device or a pipe, expected a file");
   }
   if (::ftruncate(file_.get(), static_cast<off_t>(size)) != 0 ||
       ::lseek(file_.get(), static_cast<off_t>(size), SEEK_SET) < 0) {
@@ -131,7 +127,7 @@ hal::Result<void> AtomicFile::truncate(std::uint64_t size) {
 }
 
 hal::Result<void> AtomicFile::commit() {
-  if (!file_.is_open()) return hal::fail(hal::ErrorCode::usage, target_.string(), "was already finished or given up");
+  if (!file_.is_open()) return hal::fail(hal::ErrorCode::usage, target_, "was already finished or given up");
   int error_number = 0;
   if (replaces_ && ::fsync(file_.get()) != 0) error_number = errno;
   if (error_number != 0) {
@@ -144,7 +140,7 @@ hal::Result<void> AtomicFile::commit() {
     if (replaces_) ::unlink(partial_.c_str());
     return tl::unexpected(file_error(error_number, target_, cannot_write));
   }
-  if (replaces_) flush_folder(target_.parent_path());
+  if (replaces_) flush_folder_of(target_);
   return {};
 }
 
@@ -166,10 +162,10 @@ hal::Result<void> make_folder(const std::string& folder, std::string_view troubl
   return {};
 }
 
-hal::Result<void> write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  auto file = AtomicFile::create(path);
-  if (!file) return tl::unexpected(std::move(file.error()));
-  return file->write(bytes).and_then([&] { return file->commit(); });
+hal::Result<void> write_file_atomically(const std::string& path, std::span<const std::byte> bytes) {
+  AtomicFile file = TRY(AtomicFile::create(path));
+  TRY(file.write(bytes));
+  return file.commit();
 }
 
 }  // namespace compueye::firmware

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,11 +26,11 @@ namespace compueye::firmware {
 /// size limit), io (permission, read-only, target is a folder).
 class AtomicFile {
  public:
-  [[nodiscard]] static hal::Result<AtomicFile> create(const std::filesystem::path& path);
+  [[nodiscard]] static hal::Result<AtomicFile> create(const std::string& path);
 
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
-  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile(AtomicFile&&) noexcept = default;
   AtomicFile& operator=(AtomicFile&& other) noexcept;
   ~AtomicFile();
 
@@ -52,7 +51,7 @@ class AtomicFile {
   void discard() noexcept;
 
   /// Where the bytes are until commit(); the target itself for a device or pipe.
-  [[nodiscard]] const std::filesystem::path& partial_path() const noexcept { return partial_; }
+  [[nodiscard]] const std::string& partial_path() const noexcept { return partial_; }
   /// False for a device or a pipe.
   [[nodiscard]] bool replaces() const noexcept { return replaces_; }
 
@@ -61,8 +60,8 @@ class AtomicFile {
   [[nodiscard]] hal::Result<void> open_partial(std::optional<mode_t> permissions);
 
   FileDescriptor file_;
-  std::filesystem::path target_;
-  std::filesystem::path partial_;
+  std::string target_;
+  std::string partial_;
   bool replaces_ = true;
 };
 
@@ -74,7 +73,6 @@ class AtomicFile {
 [[nodiscard]] hal::Result<void> make_folder(const std::string& folder, std::string_view trouble = "cannot be made");
 
 /// create, write, commit.
-[[nodiscard]] hal::Result<void> write_file_atomically(const std::filesystem::path& path,
-                                                      std::span<const std::byte> bytes);
+[[nodiscard]] hal::Result<void> write_file_atomically(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace compueye::firmware

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <string>
 
 #include "hal/result.hpp"
 #include "recon/reconstructor.hpp"
@@ -18,16 +18,16 @@ struct FactorKey {
 };
 
 /// "<folder>/factor-<16 hex digits of the key's hash>.bin"
-[[nodiscard]] std::filesystem::path factor_path(const std::filesystem::path& folder, const FactorKey& key);
+[[nodiscard]] std::string factor_path(const std::string& folder, const FactorKey& key);
 
 /// Errors: not_found (nothing stored under this key), stale (stored by another version of this program, or for another
 /// key), bad_format (truncated, too long, or damaged: the checksum is wrong), io. Never a factor that is not the one
 /// asked for.
-[[nodiscard]] hal::Result<recon::Factor> load_factor(const std::filesystem::path& folder, const FactorKey& key);
+[[nodiscard]] hal::Result<recon::Factor> load_factor(const std::string& folder, const FactorKey& key);
 
 /// Stores atomically, making the folder when it is missing. A board's folder may well be read-only: the caller can go
 /// on after an error. Errors: mismatch (the factor is not the key's), and those of AtomicFile.
-[[nodiscard]] hal::Result<void> store_factor(const std::filesystem::path& folder, const FactorKey& key,
+[[nodiscard]] hal::Result<void> store_factor(const std::string& folder, const FactorKey& key,
                                              const recon::Factor& factor);
 
 }  // namespace compueye::firmware

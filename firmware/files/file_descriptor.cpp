@@ -6,11 +6,61 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <system_error>
 #include <utility>
 
-#include "firmware/files/file_error.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
+namespace {
+
+struct Advice {
+  hal::ErrorCode code;
+  std::string_view reason;  // empty: the system's own words
+  std::string_view remedy;
+};
+
+Advice advice_for(int error_number) {
+  using hal::ErrorCode;
+  switch (error_number) {
+    case ENOENT:
+      return {ErrorCode::not_found, "it, or the folder it is in, does not exist", "check the name or make the folder"};
+    case ENOTDIR:
+      return {ErrorCode::not_found, "a part of its path is a file and not a folder", "check the path"};
+    case EISDIR:
+      return {ErrorCode::io, "it is a folder", "name a file"};
+    case EACCES:
+    case EPERM:
+      return {ErrorCode::io, "permission is denied", "check who owns it and what its folder allows"};
+    case EROFS:
+      return {ErrorCode::io, "it is on a read-only file system", "choose another folder"};
+    case ENOSPC:
+      return {ErrorCode::no_space, "no space is left on the device", "free some space or choose another disk"};
+    case EDQUOT:
+      return {ErrorCode::no_space, "the disk quota is used up", "free some space or choose another disk"};
+    case EFBIG:
+      return {ErrorCode::no_space, "it would exceed the largest allowed file size",
+              "raise the limit (ulimit -f) or write less"};
+    case ENAMETOOLONG:
+      return {ErrorCode::io, "its name is too long", "choose a shorter name"};
+    case EMFILE:
+    case ENFILE:
+      return {ErrorCode::io, "too many files are open", "raise the limit (ulimit -n)"};
+    default:
+      return {ErrorCode::io, {}, {}};
+  }
+}
+
+}  // namespace
+
+hal::Error file_error(int error_number, const std::string& path, std::string_view action) {
+  const Advice advice = advice_for(error_number);
+  std::string sentence(action);
+  sentence += ": ";
+  sentence += advice.reason.empty() ? std::generic_category().message(error_number) : std::string(advice.reason);
+  if (!advice.remedy.empty()) sentence.append("; ").append(advice.remedy);
+  return {advice.code, path, std::move(sentence)};
+}
 
 FileDescriptor::FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
 
@@ -31,7 +81,7 @@ int FileDescriptor::close() noexcept {
   return ::close(std::exchange(fd_, -1)) == 0 ? 0 : errno;
 }
 
-hal::Result<FileDescriptor> open_for_reading(const std::filesystem::path& path) {
+hal::Result<FileDescriptor> open_for_reading(const std::string& path) {
   FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.is_open()) return tl::unexpected(file_error(errno, path, "cannot be opened"));
   struct stat status {};
@@ -47,8 +97,7 @@ std::optional<std::uint64_t> regular_size(const FileDescriptor& file) noexcept {
   return static_cast<std::uint64_t>(status.st_size);
 }
 
-hal::Result<std::size_t> read_some(const FileDescriptor& file, const std::filesystem::path& path,
-                                   std::span<std::byte> into) {
+hal::Result<std::size_t> read_some(const FileDescriptor& file, const std::string& path, std::span<std::byte> into) {
   std::size_t done = 0;
   while (done < into.size()) {
     const ssize_t got = ::read(file.get(), into.data() + done, into.size() - done);
@@ -70,26 +119,23 @@ int write_all(int fd, std::span<const std::byte> bytes) noexcept {
   return 0;
 }
 
-hal::Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
-  auto file = open_for_reading(path);
-  if (!file) return tl::unexpected(std::move(file.error()));
+hal::Result<std::string> read_whole_file(const std::string& path, std::uint64_t max_bytes) {
+  const FileDescriptor file = TRY(open_for_reading(path));
   constexpr std::size_t step = 1U << 20U;
-  const auto known = regular_size(*file);
+  const auto known = regular_size(file);
   std::string text;
   for (;;) {
     // A regular file is read in one go; one byte more than its size shows at once that its end is reached.
     const std::size_t want = known && text.empty() && *known <= max_bytes ? static_cast<std::size_t>(*known) + 1 : step;
     if ((known && *known > max_bytes) || text.size() > max_bytes) {
       const std::string size = known ? "has " + std::to_string(*known) : "has more than " + std::to_string(max_bytes);
-      return hal::fail(hal::ErrorCode::no_space, path.string(),
-                       size + " bytes, expected at most " + std::to_string(max_bytes));
+      return hal::fail(hal::ErrorCode::no_space, path, size + " bytes, expected at most " + std::to_string(max_bytes));
     }
     const std::size_t before = text.size();
     text.resize(before + want);
-    auto got = read_some(*file, path, std::as_writable_bytes(std::span(text).subspan(before)));
-    if (!got) return tl::unexpected(std::move(got.error()));
-    text.resize(before + *got);
-    if (*got < want) return text;
+    const std::size_t got = TRY(read_some(file, path, std::as_writable_bytes(std::span(text).subspan(before))));
+    text.resize(before + got);
+    if (got < want) return text;
   }
 }
 

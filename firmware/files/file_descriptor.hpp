@@ -2,14 +2,27 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
+
+/// Turns an errno into an Error whose place is `path` and whose sentence says what could not be done (`action`, for
+/// example "cannot be written"), why, and what to do about it. Codes: not_found, no_space (full disk, quota, size
+/// limit), otherwise io.
+[[nodiscard]] hal::Error file_error(int error_number, const std::string& path, std::string_view action);
+
+/// The result of making something out of a file, or for one: what is wrong with it is said of the file.
+template <class T>
+[[nodiscard]] hal::Result<T> placed(hal::Result<T> result, const std::string& path) {
+  if (!result) result.error().place = path;
+  return result;
+}
 
 /// Owns an open file; closes it when it goes away.
 class FileDescriptor {
@@ -32,19 +45,19 @@ class FileDescriptor {
 };
 
 /// Opens for reading. Errors: not_found, io (a folder, no permission).
-[[nodiscard]] hal::Result<FileDescriptor> open_for_reading(const std::filesystem::path& path);
+[[nodiscard]] hal::Result<FileDescriptor> open_for_reading(const std::string& path);
 
 /// Size in bytes of a regular file; nothing for a pipe or a device, whose end is only known once it is reached.
 [[nodiscard]] std::optional<std::uint64_t> regular_size(const FileDescriptor& file) noexcept;
 
 /// Fills `into` as far as the file goes; returns the bytes read, fewer only at the end of the file.
-[[nodiscard]] hal::Result<std::size_t> read_some(const FileDescriptor& file, const std::filesystem::path& path,
+[[nodiscard]] hal::Result<std::size_t> read_some(const FileDescriptor& file, const std::string& path,
                                                  std::span<std::byte> into);
 
 /// Writes everything, or returns the errno that stopped it. Neither allocates nor throws.
 [[nodiscard]] int write_all(int fd, std::span<const std::byte> bytes) noexcept;
 
 /// The whole file. A file larger than `max_bytes` is refused with no_space before it is read.
-[[nodiscard]] hal::Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t max_bytes);
+[[nodiscard]] hal::Result<std::string> read_whole_file(const std::string& path, std::uint64_t max_bytes);
 
 }  // namespace compueye::firmware

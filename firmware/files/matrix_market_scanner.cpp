@@ -105,12 +105,12 @@ bool MatrixMarketScanner::end_line(std::string_view expected) {
 }
 
 bool MatrixMarketScanner::fail(hal::ErrorCode code, const std::string& sentence) {
-  error_ = hal::Error{code, path_.string() + ":" + std::to_string(line_), sentence};
+  error_ = hal::Error{code, path_ + ":" + std::to_string(line_), sentence};
   return false;
 }
 
 bool MatrixMarketScanner::fail_file(hal::ErrorCode code, const std::string& sentence) {
-  error_ = hal::Error{code, path_.string(), sentence};
+  error_ = hal::Error{code, path_, sentence};
   return false;
 }
 

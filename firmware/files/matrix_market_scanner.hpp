@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,7 +13,7 @@ namespace compueye::firmware {
 /// aside, because nine million entries are read through these calls.
 class MatrixMarketScanner {
  public:
-  MatrixMarketScanner(const std::filesystem::path& path, std::string_view text) : path_(path), rest_(text) {}
+  MatrixMarketScanner(const std::string& path, std::string_view text) : path_(path), rest_(text) {}
 
   /// Moves to the next line that is not empty; false at the end of the file.
   bool next_line();
@@ -40,7 +39,7 @@ class MatrixMarketScanner {
   void skip_blanks();
   [[nodiscard]] std::string token() const;
 
-  std::filesystem::path path_;
+  std::string path_;
   std::string_view rest_;
   std::int64_t line_ = 1;
   std::optional<hal::Error> error_;

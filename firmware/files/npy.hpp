@@ -1,13 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "hal/image.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
@@ -26,10 +24,10 @@ struct NpyArray {
 /// Errors, each naming the file, what was found and what was expected: not_found, io; bad_format (not an .npy file,
 /// truncated, trailing bytes); unsupported (big-endian, Fortran order, complex, string, object, structured: the
 /// sentence names the NumPy call that converts it); mismatch (dimensions); out_of_range (empty, inexact integer).
-[[nodiscard]] hal::Result<NpyArray> read_npy(const std::filesystem::path& path, int min_dims, int max_dims);
+[[nodiscard]] hal::Result<NpyArray> read_npy(const std::string& path, int min_dims, int max_dims);
 
 /// A matrix, shape (rows, cols).
-[[nodiscard]] hal::Result<NpyArray> read_matrix(const std::filesystem::path& path);
+[[nodiscard]] hal::Result<NpyArray> read_matrix(const std::string& path);
 
 /// Samples y: (M,) for one frame, or (frames, M).
 struct SampleArray {
@@ -42,7 +40,7 @@ struct SampleArray {
     return std::span(values).subspan(static_cast<std::size_t>(f * channels), static_cast<std::size_t>(channels));
   }
 };
-[[nodiscard]] hal::Result<SampleArray> read_samples(const std::filesystem::path& path);
+[[nodiscard]] hal::Result<SampleArray> read_samples(const std::string& path);
 
 /// Pictures x: (H, W), or (frames, H, W).
 struct PictureArray {
@@ -52,10 +50,7 @@ struct PictureArray {
   bool has_frame_axis = false;
   std::vector<double> values;  ///< frames * rows * cols
 };
-[[nodiscard]] hal::Result<PictureArray> read_pictures(const std::filesystem::path& path);
-
-/// One picture: (H, W) or (1, H, W). A finite value beyond float32 is out_of_range.
-[[nodiscard]] hal::Result<hal::Image> read_picture(const std::filesystem::path& path);
+[[nodiscard]] hal::Result<PictureArray> read_pictures(const std::string& path);
 
 /// Flat index of the first NaN or infinity.
 [[nodiscard]] std::optional<std::size_t> first_non_finite(std::span<const double> values) noexcept;
@@ -65,9 +60,9 @@ struct PictureArray {
 
 /// Writes an array as little-endian C-order .npy, version 1.0, atomically. Errors: usage (shape and values differ in
 /// size), and those of AtomicFile.
-[[nodiscard]] hal::Result<void> write_npy(const std::filesystem::path& path, std::span<const std::int64_t> shape,
+[[nodiscard]] hal::Result<void> write_npy(const std::string& path, std::span<const std::int64_t> shape,
                                           std::span<const float> values);
-[[nodiscard]] hal::Result<void> write_npy(const std::filesystem::path& path, std::span<const std::int64_t> shape,
+[[nodiscard]] hal::Result<void> write_npy(const std::string& path, std::span<const std::int64_t> shape,
                                           std::span<const double> values);
 
 }  // namespace compueye::firmware

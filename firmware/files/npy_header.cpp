@@ -2,33 +2,82 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
-#include <optional>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
 #include <utility>
+
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
 
+static_assert(std::endian::native == std::endian::little, "numbers are copied from and to little-endian files");
+
 using hal::ErrorCode;
 using hal::Result;
 
-struct TypeName {
-  NpyType type;
-  std::string_view code;
-  std::size_t bytes;
-};
-constexpr std::array<TypeName, 12> type_names{{{NpyType::f2, "f2", 2},
-                                               {NpyType::f4, "f4", 4},
-                                               {NpyType::f8, "f8", 8},
-                                               {NpyType::i1, "i1", 1},
-                                               {NpyType::i2, "i2", 2},
-                                               {NpyType::i4, "i4", 4},
-                                               {NpyType::i8, "i8", 8},
-                                               {NpyType::u1, "u1", 1},
-                                               {NpyType::u2, "u2", 2},
-                                               {NpyType::u4, "u4", 4},
-                                               {NpyType::u8, "u8", 8},
-                                               {NpyType::b1, "b1", 1}}};
+double half_to_double(std::uint16_t bits) {
+  const int exponent = (bits >> 10U) & 0x1F;
+  const int fraction = bits & 0x3FF;
+  const double sign = (bits & 0x8000U) != 0 ? -1.0 : 1.0;
+  if (exponent == 0x1F) {
+    return sign * (fraction != 0 ? std::numeric_limits<double>::quiet_NaN() : std::numeric_limits<double>::infinity());
+  }
+  return sign * (exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(fraction + 1024, exponent - 25));
+}
+
+template <class T>
+T load(const char* from) {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
+template <class T>
+std::optional<std::string> append(const char* from, std::size_t count, std::vector<double>& out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const T value = load<T>(from + i * sizeof(T));
+    if constexpr (std::is_integral_v<T> && sizeof(T) == 8) {
+      constexpr T exact = T{1} << 53;
+      bool holds = value <= exact;
+      if constexpr (std::is_signed_v<T>) holds = holds && value >= -exact;
+      if (!holds) return std::to_string(value);
+    }
+    out.push_back(static_cast<double>(value));
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> append_halves(const char* from, std::size_t count, std::vector<double>& out) {
+  for (std::size_t i = 0; i < count; ++i) out.push_back(half_to_double(load<std::uint16_t>(from + 2 * i)));
+  return std::nullopt;
+}
+
+std::optional<std::string> append_booleans(const char* from, std::size_t count, std::vector<double>& out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto value = static_cast<unsigned char>(from[i]);
+    if (value > 1) return std::to_string(value);
+    out.push_back(value);
+  }
+  return std::nullopt;
+}
+
+constexpr std::array<NpyType, 12> types{{{"f2", 2, append_halves},
+                                         {"f4", 4, append<float>},
+                                         {"f8", 8, append<double>},
+                                         {"i1", 1, append<std::int8_t>},
+                                         {"i2", 2, append<std::int16_t>},
+                                         {"i4", 4, append<std::int32_t>},
+                                         {"i8", 8, append<std::int64_t>},
+                                         {"u1", 1, append<std::uint8_t>},
+                                         {"u2", 2, append<std::uint16_t>},
+                                         {"u4", 4, append<std::uint32_t>},
+                                         {"u8", 8, append<std::uint64_t>},
+                                         {"b1", 1, append_booleans}}};
 
 bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r';
@@ -95,9 +144,9 @@ std::string printable(std::string_view text) {
   return out;
 }
 
-tl::unexpected<hal::Error> not_a_header(const std::filesystem::path& path, const std::string& what) {
+tl::unexpected<hal::Error> not_a_header(const std::string& path, const std::string& what) {
   return hal::fail(
-      ErrorCode::bad_format, path.string(),
+      ErrorCode::bad_format, path,
       "has a damaged .npy header (" + what + "), expected a dictionary with the keys descr, fortran_order and shape");
 }
 
@@ -121,30 +170,29 @@ std::string_view refused_kind(char kind) {
   }
 }
 
-Result<NpyType> parse_descr(const std::filesystem::path& path, std::string_view descr) {
+Result<const NpyType*> parse_descr(const std::string& path, std::string_view descr) {
   const bool has_order = !descr.empty() && std::string_view("<>|=").find(descr[0]) != std::string_view::npos;
   const char order = has_order ? descr[0] : '|';
   const std::string_view code = has_order ? descr.substr(1) : descr;
   const std::string quoted = "'" + printable(descr) + "'";
-  const auto known =
-      std::find_if(type_names.begin(), type_names.end(), [&](const TypeName& t) { return t.code == code; });
-  if (known == type_names.end()) {
+  const auto* known = std::find_if(types.begin(), types.end(), [&](const NpyType& t) { return t.code == code; });
+  if (known == types.end()) {
     const char kind = code.empty() ? '?' : code[0];
     const std::string what = kind == 'f' ? "floats wider than 64 bits" : std::string(refused_kind(kind));
-    return hal::fail(ErrorCode::unsupported, path.string(),
+    return hal::fail(ErrorCode::unsupported, path,
                      "holds " + what + " (dtype " + quoted +
                          "), expected real numbers: f4 or f8, or integers, e.g. numpy.save(name, arr.astype('<f4'))");
   }
   if (known->bytes > 1 && order != '<') {
     const std::string how = order == '>' ? "is big-endian" : "does not say its byte order";
-    return hal::fail(ErrorCode::unsupported, path.string(),
+    return hal::fail(ErrorCode::unsupported, path,
                      how + " (dtype " + quoted + "), expected little-endian: save arr.astype('<" + std::string(code) +
                          "'), or arr.astype('<f4')");
   }
-  return known->type;
+  return known;
 }
 
-Result<std::vector<std::int64_t>> parse_shape(const std::filesystem::path& path, Scanner& scan) {
+Result<std::vector<std::int64_t>> parse_shape(const std::string& path, Scanner& scan) {
   if (!scan.take('(')) return not_a_header(path, "shape is not a tuple");
   std::vector<std::int64_t> shape;
   while (!scan.take(')')) {
@@ -164,12 +212,12 @@ struct Fields {
   std::optional<std::vector<std::int64_t>> shape;
 };
 
-Result<void> parse_field(const std::filesystem::path& path, Scanner& scan, Fields& fields) {
+Result<void> parse_field(const std::string& path, Scanner& scan, Fields& fields) {
   const auto key = scan.quoted();
   if (!key || !scan.take(':')) return not_a_header(path, "a key is missing");
   if (*key == "descr" && !fields.descr) {
     if (scan.next_is('[')) {
-      return hal::fail(ErrorCode::unsupported, path.string(),
+      return hal::fail(ErrorCode::unsupported, path,
                        "holds structured records, expected plain real numbers: save one field, e.g. arr['name']");
     }
     fields.descr = scan.quoted();
@@ -181,9 +229,7 @@ Result<void> parse_field(const std::filesystem::path& path, Scanner& scan, Field
     }
     fields.fortran = *value == "True";
   } else if (*key == "shape" && !fields.shape) {
-    auto shape = parse_shape(path, scan);
-    if (!shape) return tl::unexpected(std::move(shape.error()));
-    fields.shape = std::move(*shape);
+    fields.shape = TRY(parse_shape(path, scan));
   } else {
     return not_a_header(path, "key '" + printable(*key) + "' is unknown or repeated");
   }
@@ -191,10 +237,6 @@ Result<void> parse_field(const std::filesystem::path& path, Scanner& scan, Field
 }
 
 }  // namespace
-
-std::size_t item_bytes(NpyType type) noexcept {
-  return type_names[static_cast<std::size_t>(type)].bytes;
-}
 
 std::string shape_text(std::span<const std::int64_t> shape) {
   std::string text = "(";
@@ -205,29 +247,27 @@ std::string shape_text(std::span<const std::int64_t> shape) {
   return text + (shape.size() == 1 ? ",)" : ")");
 }
 
-Result<NpyHeader> parse_npy_header(const std::filesystem::path& path, std::string_view text) {
+Result<NpyHeader> parse_npy_header(const std::string& path, std::string_view text) {
   Scanner scan(text);
   Fields fields;
   if (!scan.take('{')) return not_a_header(path, "it does not begin with '{'");
   while (!scan.take('}')) {
-    if (auto ok = parse_field(path, scan, fields); !ok) return tl::unexpected(std::move(ok.error()));
+    TRY(parse_field(path, scan, fields));
     if (!scan.take(',') && !scan.next_is('}')) return not_a_header(path, "it is not closed");
   }
   if (!scan.at_end()) return not_a_header(path, "something follows its '}'");
   if (!fields.descr || !fields.fortran || !fields.shape) return not_a_header(path, "a key is missing");
-  auto type = parse_descr(path, *fields.descr);
-  if (!type) return tl::unexpected(std::move(type.error()));
+  const NpyType* type = TRY(parse_descr(path, *fields.descr));
   if (*fields.fortran && fields.shape->size() > 1) {
-    return hal::fail(ErrorCode::unsupported, path.string(),
+    return hal::fail(ErrorCode::unsupported, path,
                      "is in Fortran order, expected C order (rows first): save numpy.ascontiguousarray(arr)");
   }
-  return NpyHeader{*type, std::move(*fields.shape)};
+  return NpyHeader{type, std::move(*fields.shape)};
 }
 
-std::string format_npy_header(NpyType type, std::span<const std::int64_t> shape, std::size_t min_bytes) {
-  const TypeName& t = type_names[static_cast<std::size_t>(type)];
-  const std::string dict = std::string("{'descr': '") + (t.bytes > 1 ? '<' : '|') + std::string(t.code) +
-                           "', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
+std::string format_npy_header(std::string_view descr, std::span<const std::int64_t> shape, std::size_t min_bytes) {
+  const std::string dict =
+      "{'descr': '" + std::string(descr) + "', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
   const std::size_t least = std::max(npy_preamble_v1_bytes + dict.size() + 1, min_bytes);
   const std::size_t total = (least + 63) / 64 * 64;
   const std::size_t length = total - npy_preamble_v1_bytes;

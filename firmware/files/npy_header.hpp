@@ -1,7 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,15 +12,18 @@
 
 namespace compueye::firmware {
 
-/// The element types of .npy files that hold plain real numbers.
-enum class NpyType : std::uint8_t { f2, f4, f8, i1, i2, i4, i8, u1, u2, u4, u8, b1 };
-
-[[nodiscard]] std::size_t item_bytes(NpyType type) noexcept;
+/// A kind of plain real number that .npy files hold.
+struct NpyType {
+  std::string_view code;  ///< "f4"; "<f4" in the file
+  std::size_t bytes;      ///< of one element
+  /// Appends `count` elements as doubles; the text of the first that is not exact as one (or no boolean), or nothing.
+  std::optional<std::string> (*append)(const char* from, std::size_t count, std::vector<double>& out);
+};
 
 /// What stands in front of the numbers of an .npy file.
 /// Source: NumPy Enhancement Proposal 1, "A simple file format for NumPy arrays", versions 1.0, 2.0 and 3.0.
 struct NpyHeader {
-  NpyType type = NpyType::f4;
+  const NpyType* type = nullptr;
   std::vector<std::int64_t> shape;  ///< empty for a single number (0-d)
 };
 
@@ -30,10 +34,11 @@ inline constexpr std::size_t npy_preamble_v2_bytes = 12;
 /// The dictionary in the header: exactly the keys descr, fortran_order and shape, in any order. Little-endian and
 /// C order only; what else NumPy may write is refused by name with the call that converts it. `path` is for messages.
 /// Errors: bad_format (not a header), unsupported (big-endian, Fortran order, complex, string, object, structured).
-[[nodiscard]] hal::Result<NpyHeader> parse_npy_header(const std::filesystem::path& path, std::string_view text);
+[[nodiscard]] hal::Result<NpyHeader> parse_npy_header(const std::string& path, std::string_view text);
 
 /// Magic, version 1.0, length and dictionary, padded with spaces to a multiple of 64 bytes, at least `min_bytes`.
-[[nodiscard]] std::string format_npy_header(NpyType type, std::span<const std::int64_t> shape,
+/// `descr` is the type as NumPy writes it: "<f4".
+[[nodiscard]] std::string format_npy_header(std::string_view descr, std::span<const std::int64_t> shape,
                                             std::size_t min_bytes = 0);
 
 /// "(3, 4)", "(5,)", "()" as NumPy writes it.

@@ -10,6 +10,7 @@
 
 #include "firmware/files/file_descriptor.hpp"
 #include "firmware/files/png.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -92,21 +93,20 @@ class PngReader {
   char message_[96] = {};
 };
 
-tl::unexpected<hal::Error> damaged(const std::filesystem::path& path, const PngReader& reader) {
-  return hal::fail(ErrorCode::bad_format, path.string(),
-                   "is a damaged PNG (" + reader.message() + "), expected a whole one");
+tl::unexpected<hal::Error> damaged(const std::string& path, const PngReader& reader) {
+  return hal::fail(ErrorCode::bad_format, path, "is a damaged PNG (" + reader.message() + "), expected a whole one");
 }
 
-Result<void> check_size(const std::filesystem::path& path, const PngReader& reader, std::size_t file_bytes) {
+Result<void> check_size(const std::string& path, const PngReader& reader, std::size_t file_bytes) {
   const std::string size = std::to_string(reader.rows) + " x " + std::to_string(reader.cols);
   if (reader.rows > max_png_side || reader.cols > max_png_side) {
-    return hal::fail(ErrorCode::out_of_range, path.string(),
+    return hal::fail(ErrorCode::out_of_range, path,
                      "has " + size + " pixels, expected at most " + std::to_string(max_png_side) + " rows and columns");
   }
   // Deflate shrinks by 1032 at most: a tiny file cannot make us take a lot of memory.
   const std::size_t raw = reader.rows * ((reader.cols * reader.file_bits_a_pixel + 7) / 8);
   if (raw / 1032 > file_bytes) {
-    return hal::fail(ErrorCode::bad_format, path.string(),
+    return hal::fail(ErrorCode::bad_format, path,
                      "claims " + size + " pixels, which its " + std::to_string(file_bytes) + " bytes cannot hold");
   }
   return {};
@@ -124,7 +124,7 @@ struct Raster {
 };
 
 template <class Code>
-Result<hal::Image> to_grey(const std::filesystem::path& path, const PngReader& reader) {
+Result<hal::Image> to_grey(const std::string& path, const PngReader& reader) {
   constexpr double white = std::numeric_limits<Code>::max();
   const Raster<Code> raster{reader};
   const bool colour = reader.channels >= 3;
@@ -134,7 +134,7 @@ Result<hal::Image> to_grey(const std::filesystem::path& path, const PngReader& r
   for (std::size_t row = 0; row < reader.rows; ++row) {
     for (std::size_t col = 0; col < reader.cols; ++col, ++at) {
       if (alpha && raster.code(row, col, reader.channels - 1) != white) {
-        return hal::fail(ErrorCode::unsupported, path.string(),
+        return hal::fail(ErrorCode::unsupported, path,
                          "is not opaque at row " + std::to_string(row) + ", column " + std::to_string(col) +
                              ", expected a picture without transparency: flatten it onto its background first");
       }
@@ -153,18 +153,17 @@ Result<hal::Image> to_grey(const std::filesystem::path& path, const PngReader& r
 
 }  // namespace
 
-Result<hal::Image> read_png(const std::filesystem::path& path) {
+Result<hal::Image> read_png(const std::string& path) {
   // Incompressible RGBA of 16 bits at the largest size, with room for other chunks.
   constexpr std::uint64_t max_file_bytes = std::uint64_t{1} << 30U;
-  const auto bytes = read_whole_file(path, max_file_bytes);
-  if (!bytes) return tl::unexpected(bytes.error());
-  if (bytes->size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes->data()), 0, 8) != 0) {
-    return hal::fail(ErrorCode::bad_format, path.string(),
-                     bytes->empty() ? "is an empty file, expected a PNG picture" : "is not a PNG picture");
+  const std::string bytes = TRY(read_whole_file(path, max_file_bytes));
+  if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0) {
+    return hal::fail(ErrorCode::bad_format, path,
+                     bytes.empty() ? "is an empty file, expected a PNG picture" : "is not a PNG picture");
   }
-  PngReader reader(*bytes);
+  PngReader reader(bytes);
   if (!reader.run(PngReader::read_header)) return damaged(path, reader);
-  if (auto ok = check_size(path, reader, bytes->size()); !ok) return tl::unexpected(std::move(ok.error()));
+  TRY(check_size(path, reader, bytes.size()));
   if (!reader.run(PngReader::prepare_rows)) return damaged(path, reader);
   reader.raster.resize(reader.rows * reader.stride);
   reader.row_pointers.resize(reader.rows);

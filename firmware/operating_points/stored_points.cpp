@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "firmware/files/atomic_file.hpp"
-#include "firmware/files/file_error.hpp"
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
 
@@ -306,9 +305,7 @@ std::string points_path(const std::string& folder) {
 }
 
 Result<void> store_points(const std::string& folder, const Sweep& sweep) {
-  std::error_code ec;
-  fs::create_directories(folder, ec);
-  if (ec) return tl::unexpected(file_error(ec.value(), folder, "cannot be made to store measured points in"));
+  TRY(make_folder(folder, "cannot be made to store measured points in"));
   Json json{{"format", format_name}, {"version", format_version}};
   json.update(json_of(sweep));
   const std::string text = text_of(json);

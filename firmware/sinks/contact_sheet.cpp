@@ -5,8 +5,9 @@
 #include <cstdio>
 #include <utility>
 
+#include "firmware/files/file_descriptor.hpp"
 #include "firmware/sinks/bitmap_font.hpp"
-#include "firmware/sinks/diverging_colours.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -23,6 +24,22 @@ constexpr int gap = 16;
 constexpr int line_height = 24;
 constexpr int bar_height = 10;
 constexpr int most_panel_pixels = 4096;
+
+constexpr Rgb magenta{255, 0, 255};
+
+struct Stop {
+  double at;
+  double r, g, b;
+};
+// Chosen for about the same CIE lightness (20, 50, 65, 92) at each pair of stops.
+constexpr std::array<Stop, 5> below_zero{
+    {{0.0, 0, 0, 0}, {0.25, 8, 46, 104}, {0.5, 32, 104, 190}, {0.75, 84, 166, 240}, {1.0, 208, 236, 255}}};
+constexpr std::array<Stop, 5> above_zero{
+    {{0.0, 0, 0, 0}, {0.25, 92, 32, 8}, {0.5, 186, 78, 20}, {0.75, 242, 140, 48}, {1.0, 255, 232, 190}}};
+
+std::uint8_t to_code(double v) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(v, 0.0, 255.0)));
+}
 
 class Canvas {
  public:
@@ -126,12 +143,11 @@ struct SheetRow {
 Result<SheetRow> measure_row(std::span<const Panel> panels, int min_panel_pixels) {
   SheetRow row;
   for (const Panel& panel : panels) {
-    auto layout = measure(panel, min_panel_pixels);
-    if (!layout) return tl::unexpected(std::move(layout.error()));
-    row.picture_height = std::max(row.picture_height, layout->picture_rows);
-    row.caption_height = std::max(row.caption_height, layout->caption_height());
-    row.width += layout->width + gap;
-    row.layouts.push_back(std::move(*layout));
+    Layout layout = TRY(measure(panel, min_panel_pixels));
+    row.picture_height = std::max(row.picture_height, layout.picture_rows);
+    row.caption_height = std::max(row.caption_height, layout.caption_height());
+    row.width += layout.width + gap;
+    row.layouts.push_back(std::move(layout));
   }
   return row;
 }
@@ -178,6 +194,23 @@ void draw_panel(Canvas& canvas, const Layout& layout, int top, int left, int pic
 
 }  // namespace
 
+Rgb diverging_colour(double value) noexcept {
+  if (std::isnan(value)) return magenta;
+  const auto& stops = value < 0.0 ? below_zero : above_zero;
+  const double t = std::min(std::abs(value), 1.0);
+  std::size_t i = 1;
+  while (i + 1 < stops.size() && stops[i].at < t) ++i;
+  const Stop &a = stops[i - 1], &b = stops[i];
+  const double f = (t - a.at) / (b.at - a.at);
+  return {to_code(a.r + f * (b.r - a.r)), to_code(a.g + f * (b.g - a.g)), to_code(a.b + f * (b.b - a.b))};
+}
+
+Rgb grey_colour(double value) noexcept {
+  if (std::isnan(value)) return magenta;
+  const std::uint8_t code = to_code(255.0 * std::clamp(value, 0.0, 1.0));
+  return {code, code, code};
+}
+
 double error_scale(const hal::Image& error) {
   std::vector<double> magnitudes;
   for (const float v : error.pixels) {
@@ -222,11 +255,10 @@ Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const
   std::int64_t height = margin + title_height + margin / 2 - gap;
   for (std::size_t first = 0, end = 0; first < panels.size(); first = end) {
     for (end = first + 1; end < panels.size() && !panels[end].begins_row;) ++end;
-    auto row = measure_row(panels.subspan(first, end - first), least);
-    if (!row) return tl::unexpected(std::move(row.error()));
-    width = std::max(width, row->width);
-    height += row->height() + gap;
-    rows.push_back(std::move(*row));
+    SheetRow row = TRY(measure_row(panels.subspan(first, end - first), least));
+    width = std::max(width, row.width);
+    height += row.height() + gap;
+    rows.push_back(std::move(row));
   }
   if (width > max_png_side || height > max_png_side) {
     return hal::fail(ErrorCode::usage, "contact sheet",
@@ -249,12 +281,7 @@ Result<RgbImage> compose_contact_sheet(const std::string& title, std::span<const
 
 Result<void> write_contact_sheet(const std::string& path, const std::string& title, std::span<const Panel> panels,
                                  int min_panel_pixels) {
-  auto sheet = compose_contact_sheet(title, panels, min_panel_pixels);
-  if (!sheet) {
-    sheet.error().place = path;
-    return tl::unexpected(std::move(sheet.error()));
-  }
-  return write_png(path, *sheet);
+  return write_png(path, TRY(placed(compose_contact_sheet(title, panels, min_panel_pixels), path)));
 }
 
 }  // namespace compueye::firmware

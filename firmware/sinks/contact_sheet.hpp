@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -25,6 +26,16 @@ struct Panel {
   double scale = 0.0;       ///< signed_error: the value at the ends of the colours; 0 = by error_scale()
   bool begins_row = false;  ///< of the sheet, below the panels before
 };
+
+using Rgb = std::array<std::uint8_t, 3>;
+
+/// A signed value -1..1 as a colour on black: blue below zero, black at zero, orange above, getting lighter towards
+/// both ends. Lightness grows alike on both sides, so that equal errors look equally large; blue and orange stay apart
+/// for people with any of the common colour vision deficiencies. Beyond -1..1 the end colours; NaN is magenta.
+[[nodiscard]] Rgb diverging_colour(double value) noexcept;
+
+/// A linear intensity as grey, clipped to 0..1; NaN is magenta, so that it is not taken for black.
+[[nodiscard]] Rgb grey_colour(double value) noexcept;
 
 /// A scale that shows an error picture well: the magnitude that 99 % of its pixels stay below, rounded up to 1, 2 or 5
 /// times a power of ten; 1 for a picture without error. Non-finite pixels do not count.

@@ -10,7 +10,6 @@
 
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/file_descriptor.hpp"
-#include "firmware/files/file_error.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {

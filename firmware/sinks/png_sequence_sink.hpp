@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "firmware/files/png_encoder.hpp"
+#include "firmware/files/png.hpp"
 #include "hal/frame_sink.hpp"
 
 namespace compueye::firmware {

@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "firmware/files/file_error.hpp"
+#include "firmware/files/file_descriptor.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/npy.hpp"
-#include "firmware/files/npy_frame_writer.hpp"
+#include "firmware/sinks/npy_sink.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/hal/error_check.hpp"
 
@@ -27,6 +27,10 @@ namespace {
 
 hal::Result<void> write_text(const std::filesystem::path& path, std::string_view text) {
   return write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+hal::Frame frame_of(const std::vector<float>& pixels) {
+  return {pixels, {}, 0, 0};
 }
 
 // Sets the largest allowed file size for a while; writing beyond it then fails like on a full disk.
@@ -82,9 +86,10 @@ TEST_CASE("a file appears with commit() and not before") {
     auto file = AtomicFile::create(path).value();
     REQUIRE(file.write("half").has_value());
     CHECK_FALSE(std::filesystem::exists(path));
-    CHECK(file.partial_path().extension() == ".partial");
-    CHECK(file.partial_path().parent_path() == folder.path());
-    CHECK(bytes_of(file.partial_path()) == "half");
+    const std::filesystem::path partial = file.partial_path();
+    CHECK(partial.extension() == ".partial");
+    CHECK(partial.parent_path() == folder.path());
+    CHECK(bytes_of(partial) == "half");
   }
   CHECK(folder.entries() == 0);
   REQUIRE(write_text(path, "whole").has_value());
@@ -196,7 +201,7 @@ TEST_CASE("a device is written to and never replaced") {
   CHECK(std::filesystem::is_character_file("/dev/full"));
   CHECK(write_text("/dev/null", "x").has_value());
   CHECK(std::filesystem::is_character_file("/dev/null"));
-  CHECK(NpyFrameWriter::create("/dev/null", 2, 2).error().code == ErrorCode::unsupported);
+  CHECK(NpySink("/dev/null").open({2, 2}).error().code == ErrorCode::unsupported);
 }
 
 TEST_CASE("a file size limit ends in an error and leaves the old file") {
@@ -243,15 +248,15 @@ TEST_CASE("a read-only disk is named as such") {
 TEST_CASE("frames are streamed and the header is right after close()") {
   const TemporaryFolder folder;
   const auto path = folder / "frames.npy";
+  NpySink sink(path);
   for (const std::int64_t frames : {0, 1, 3}) {
-    auto writer = NpyFrameWriter::create(path, 2, 3).value();
+    REQUIRE(sink.open({2, 3}).has_value());
     for (std::int64_t f = 0; f < frames; ++f) {
       const std::vector<float> picture(6, static_cast<float>(f) + 0.5F);
-      REQUIRE(writer.write(picture).has_value());
+      REQUIRE(sink.write(frame_of(picture)).has_value());
     }
-    REQUIRE(writer.close().has_value());
-    REQUIRE(writer.close().has_value());
-    CHECK(writer.write(std::vector<float>(6)).error().code == ErrorCode::usage);
+    REQUIRE(sink.close().has_value());
+    CHECK(sink.write(frame_of(std::vector<float>(6))).error().code == ErrorCode::usage);
     CHECK(folder.entries() == 1);
     const auto back = read_pictures(path);
     if (frames == 0) {
@@ -265,37 +270,25 @@ TEST_CASE("frames are streamed and the header is right after close()") {
       CHECK(back->values.back() == static_cast<double>(frames) - 0.5);
     }
   }
-  auto writer = NpyFrameWriter::create(folder / "b.npy", 2, 3).value();
-  CHECK(writer.write(std::vector<float>(5)).error().code == ErrorCode::usage);
-  CHECK(NpyFrameWriter::create(folder / "c.npy", 0, 3).error().code == ErrorCode::usage);
 }
 
 TEST_CASE("when the disk fills up the frames that were written whole are kept") {
   const TemporaryFolder folder;
   const auto path = folder / "frames.npy";
   const std::vector<float> picture(100, 0.25F);
-  auto writer = NpyFrameWriter::create(path, 10, 10).value();
+  NpySink sink(path);
+  REQUIRE(sink.open({10, 10}).has_value());
   {
     const FileSizeLimit limit(128 + 400 * 5 + 123);
     REQUIRE(limit.ok());
-    for (int f = 0; f < 5; ++f) REQUIRE(writer.write(picture).has_value());
-    CHECK(writer.write(picture).error().code == ErrorCode::no_space);
-    CHECK_FALSE(writer.write(picture).has_value());
-    REQUIRE(writer.close().has_value());
+    for (int f = 0; f < 5; ++f) REQUIRE(sink.write(frame_of(picture)).has_value());
+    CHECK(sink.write(frame_of(picture)).error().code == ErrorCode::no_space);
+    CHECK_FALSE(sink.write(frame_of(picture)).has_value());
+    REQUIRE(sink.close().has_value());
   }
   const auto back = read_pictures(path);
   REQUIRE(back.has_value());
   CHECK(back->frames == 5);
   CHECK(back->values == std::vector<double>(500, 0.25));
   CHECK(folder.entries() == 1);
-}
-
-TEST_CASE("a frame writer that is never closed leaves nothing") {
-  const TemporaryFolder folder;
-  {
-    auto writer = NpyFrameWriter::create(folder / "frames.npy", 2, 2).value();
-    REQUIRE(writer.write(std::vector<float>(4)).has_value());
-    CHECK_FALSE(std::filesystem::exists(folder / "frames.npy"));
-  }
-  CHECK(folder.entries() == 0);
 }

@@ -39,7 +39,7 @@ TEST_CASE("a factor comes back bit for bit under its key only") {
   REQUIRE(back.values.size() == factor.values.size());
   CHECK(std::memcmp(back.values.data(), factor.values.data(), factor.values.size() * 4) == 0);
 
-  const std::string name = factor_path(cache, key).filename().string();
+  const std::string name = std::filesystem::path(factor_path(cache, key)).filename().string();
   CHECK(name.size() == std::string("factor-0123456789abcdef.bin").size());
   for (const FactorKey& other : {FactorKey{key.response_hash ^ 1U, key.rho, key.order},
                                  FactorKey{key.response_hash, std::nextafter(key.rho, 1.0), key.order},
@@ -64,7 +64,7 @@ TEST_CASE("a factor of parity classes is shorter than its order tells, and comes
 TEST_CASE("a factor of another format version is stale") {
   const TemporaryFolder folder;
   REQUIRE(store_factor(folder.path(), key, some_factor(50, 0.125)).has_value());
-  const auto path = factor_path(folder.path(), key);
+  const std::filesystem::path path = factor_path(folder.path(), key);
   std::string bytes = bytes_of(path);
   bytes[8] = 99;
   folder.file(path.filename().string(), bytes);
@@ -77,7 +77,7 @@ TEST_CASE("a damaged factor is never taken for a good one") {
   const FactorKey small{7, 2.0, 9};
   const recon::Factor factor = some_factor(9, 2.0);
   REQUIRE(store_factor(folder.path(), small, factor).has_value());
-  const auto path = factor_path(folder.path(), small);
+  const std::filesystem::path path = factor_path(folder.path(), small);
   const std::string good = bytes_of(path);
   for (std::size_t n = 0; n < 2000; ++n) {
     const std::string bad = test::damaged(good, n);

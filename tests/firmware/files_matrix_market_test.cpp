@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "firmware/files/matrix_market.hpp"
 #include "firmware/files/response_file.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/hal/error_check.hpp"

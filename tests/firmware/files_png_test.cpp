@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "firmware/files/png.hpp"
-#include "firmware/files/png_encoder.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/hal/error_check.hpp"
 

@@ -9,7 +9,6 @@
 
 #include "firmware/sinks/bitmap_font.hpp"
 #include "firmware/sinks/contact_sheet.hpp"
-#include "firmware/sinks/diverging_colours.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;

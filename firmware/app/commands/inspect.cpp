@@ -12,9 +12,10 @@
 
 #include "firmware/app/command.hpp"
 #include "firmware/eye/board.hpp"
-#include "firmware/files/matrix_market.hpp"
+#include "firmware/files/file_descriptor.hpp"
 #include "firmware/files/npy.hpp"
 #include "firmware/files/npy_header.hpp"
+#include "firmware/files/response_file.hpp"
 #include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
 
@@ -81,11 +82,7 @@ Result<void> inspect_array(const InspectRequest& o, const recon::Progress& progr
   if (!fits) return {};
   auto matrix = recon::Response::from_dense(static_cast<int>(array.shape[0]), static_cast<int>(array.shape[1]),
                                             std::move(array.values));
-  if (!matrix) {
-    matrix.error().place = o.what;
-    return tl::unexpected(std::move(matrix.error()));
-  }
-  return add_response_figures(std::move(*matrix), picture_size_from(o.size), progress, figures);
+  return add_response_figures(TRY(placed(std::move(matrix), o.what)), picture_size_from(o.size), progress, figures);
 }
 
 Result<void> add_figures(const InspectRequest& o, const recon::Progress& progress, Figures& figures) {

@@ -211,7 +211,7 @@ Result<PictureOutputs> PictureOutputs::create(const OutputRequest& request, Sess
   AtomicFile file = TRY(AtomicFile::create(request.npy));
   const std::int64_t shape[] = {request.frames, request.size.rows, request.size.cols};
   const auto axes = std::span<const std::int64_t>(shape).subspan(request.has_frame_axis ? 0 : 1);
-  TRY(file.write(format_npy_header(NpyType::f4, axes)));
+  TRY(file.write(format_npy_header("<f4", axes)));
   outputs.npy_.emplace(std::move(file));
   return outputs;
 }

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "firmware/operating_points/point_ladder.hpp"
 #include "tests/firmware/pareto/some_sweep.hpp"

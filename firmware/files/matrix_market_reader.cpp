@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "firmware/files/file_descriptor.hpp"
-#include "firmware/files/matrix_market.hpp"
 #include "firmware/files/matrix_market_scanner.hpp"
+#include "firmware/files/response_file.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -236,18 +237,11 @@ bool read_array(MatrixMarketScanner& scan, const Banner& banner, const Sizes& si
   return expect_end(scan, sizes.entries);
 }
 
-// What the value type has to say is about this file.
-Result<Response> placed(Result<Response> response, const std::filesystem::path& path) {
-  if (!response) response.error().place = path.string();
-  return response;
-}
-
 }  // namespace
 
-Result<Response> read_matrix_market(const std::filesystem::path& path) {
-  const auto text = read_whole_file(path, max_file_bytes);
-  if (!text) return tl::unexpected(text.error());
-  MatrixMarketScanner scan(path, *text);
+Result<Response> read_matrix_market(const std::string& path) {
+  const std::string text = TRY(read_whole_file(path, max_file_bytes));
+  MatrixMarketScanner scan(path, text);
   Banner banner;
   Sizes sizes;
   if (!read_banner(scan, banner) || !read_sizes(scan, banner, sizes)) return tl::unexpected(scan.error());
