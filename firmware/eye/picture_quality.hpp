@@ -2,6 +2,7 @@
 
 #include "hal/image.hpp"
 #include "hal/result.hpp"
+#include "hal/try.hpp"
 #include "recon/metrics.hpp"
 
 namespace compueye::firmware {
@@ -14,6 +15,10 @@ struct PictureQuality {
 };
 
 /// Errors: those of the metrics.
-[[nodiscard]] hal::Result<PictureQuality> quality_of(const recon::PictureView& picture, const hal::Image& truth);
+[[nodiscard]] inline hal::Result<PictureQuality> quality_of(const recon::PictureView& picture,
+                                                            const hal::Image& truth) {
+  return PictureQuality{TRY(recon::nmse(picture, truth)), TRY(recon::psnr(picture, truth)),
+                        TRY(recon::ssim(picture, truth))};
+}
 
 }  // namespace compueye::firmware

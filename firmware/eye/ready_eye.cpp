@@ -7,7 +7,6 @@
 #include "calib/nominal.hpp"
 #include "hal/try.hpp"
 #include "recon/lambda_rule.hpp"
-#include "recon/setup/quantised_response.hpp"
 
 namespace compueye::firmware {
 
@@ -31,14 +30,14 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const std::string& cach
 
 hal::Result<ReadyEye> ReadyEye::make(const Board& board, const LivingResponse& living, const std::string& cache,
                                      const recon::Progress& progress) {
+  ReconstructorMaker maker(living.response, board.plan.op, cache);
+  return make(board, living, maker, progress);
+}
+
+hal::Result<ReadyEye> ReadyEye::make(const Board& board, const LivingResponse& living, ReconstructorMaker& maker,
+                                     const recon::Progress& progress) {
   ReadyEye eye;
   eye.sees_ = living.sees;
-  std::optional<recon::Response> rounded;
-  if (board.plan.op && recon::is_lossy(*board.plan.op)) {
-    // The factor is kept under the hash of the matrix that it belongs to.
-    rounded = recon::quantised(living.response, *board.plan.op);
-  }
-  const recon::Response& a = rounded ? *rounded : living.response;
   if (progress && !progress("lambda by rule", 0.0, 0.0)) {
     return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");
   }
@@ -47,17 +46,11 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const LivingResponse& l
   const auto seeing = static_cast<double>(std::count(eye.sees_.begin(), eye.sees_.end(), 1));
   plan.max_reweighted = static_cast<int>(std::ceil(board.sensor.max_missing_share * seeing + 1e-9));
   recon::Objective objective = board.objective;
-  eye.lambda_ = TRY(choose_lambda(a, plan.solver, objective.basis, board.lambda, board.noise_sigma()));
+  eye.lambda_ = TRY(choose_lambda(maker.response(), plan.solver, objective.basis, board.lambda, board.noise_sigma()));
   objective.lambda = eye.lambda_.value;
-  const bool cached = recon::uses_factor(plan.solver) && plan.precision == recon::Precision::f32;
-  const recon::Factor wanted = recon::Reconstructor::wanted_factor(a, objective, plan);
-  KeptFactor factor(cached ? cache : std::string(),
-                    {a.content_hash(), wanted.rho, wanted.order, wanted.metric, wanted.rank});
-  eye.reconstructor_ = std::make_unique<recon::Reconstructor>(
-      TRY(recon::Reconstructor::create(a, objective, plan, factor.take(), progress)));
-  if (cached && factor.origin() != FactorOrigin::kept) factor.keep(eye.reconstructor_->factor());
-  eye.factor_origin_ = factor.origin();
-  eye.notes_ = factor.notes();
+  eye.reconstructor_ = std::make_unique<recon::Reconstructor>(TRY(maker.make(objective, plan, progress)));
+  eye.factor_origin_ = maker.origin();
+  eye.notes_ = maker.notes();
   return eye;
 }
 

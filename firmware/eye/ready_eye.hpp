@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "firmware/eye/board.hpp"
-#include "firmware/eye/kept_factor.hpp"
+#include "firmware/eye/reconstructor_maker.hpp"
 #include "hal/result.hpp"
 #include "recon/reconstructor.hpp"
 #include "recon/response.hpp"
@@ -49,6 +49,9 @@ class ReadyEye {
   /// The same on a response that is there already, which only this call looks at.
   [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const LivingResponse& living,
                                                   const std::string& cache, const recon::Progress& progress);
+  /// The same as one of several reconstructors that `maker` makes of this response, for board.plan.op.
+  [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const LivingResponse& living,
+                                                  ReconstructorMaker& maker, const recon::Progress& progress);
 
   [[nodiscard]] const recon::Reconstructor& reconstructor() const noexcept { return *reconstructor_; }
   /// Gives the reconstructor away, and with it the right to ask for it.

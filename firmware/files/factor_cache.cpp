@@ -127,6 +127,10 @@ Result<std::uint64_t> read_payload(const FileDescriptor& file, const std::string
 
 }  // namespace
 
+FactorKey factor_key(const recon::Response& response, const recon::Factor& wanted) {
+  return {response.content_hash(), wanted.rho, wanted.order, wanted.metric, wanted.rank};
+}
+
 std::string factor_path(const std::string& folder, const FactorKey& key) {
   const Header header = header_for(key, 0, 0);
   constexpr std::string_view digits = "0123456789abcdef";

@@ -5,6 +5,7 @@
 
 #include "hal/result.hpp"
 #include "recon/reconstructor.hpp"
+#include "recon/response.hpp"
 
 namespace compueye::firmware {
 
@@ -15,7 +16,12 @@ struct FactorKey {
   int order = 0;                    ///< number of seeing rows, 1 to 46340
   recon::MetricKind metric = recon::MetricKind::identity;
   int rank = 0;  ///< number of modes, 0 for an inverse
+
+  bool operator==(const FactorKey&) const = default;
 };
+
+/// The key of the factor of such a response that is wanted, whose values do not matter.
+[[nodiscard]] FactorKey factor_key(const recon::Response& response, const recon::Factor& wanted);
 
 /// "<folder>/factor-<16 hex digits of the key's hash>.bin"
 [[nodiscard]] std::string factor_path(const std::string& folder, const FactorKey& key);

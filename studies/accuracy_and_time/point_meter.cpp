@@ -6,12 +6,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "hal/try.hpp"
-#include "recon/setup/quantised_response.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -36,33 +34,16 @@ hal::Result<CurveEyes> set_up_curve(const Board& board, const LivingResponse& li
                                     const std::vector<NoiseLevel>& levels, const recon::Progress& progress) {
   CurveEyes eyes;
   Board curved = with_curve(board, curve);
-  std::optional<recon::Response> rounded;
-  if (curve.op && recon::is_lossy(*curve.op)) rounded = recon::quantised(living.response, *curve.op);
-  const recon::Response& a = rounded ? *rounded : living.response;
   // tikhonov's factor goes with its lambda: nothing to share, nothing worth keeping.
-  const bool shares = curve.solver != recon::SolverKind::tikhonov;
+  const std::string cache = curve.solver == recon::SolverKind::tikhonov ? std::string() : board.cache();
+  ReconstructorMaker maker(living.response, curve.op, cache, ReconstructorMaker::Memory::remembers);
   for (const NoiseLevel& level : levels) {
-    if (eyes.by_level.empty() || !shares) {
-      curved.sigma = level.sigma;
-      ReadyEye eye = TRY(ReadyEye::make(curved, living, shares ? board.cache() : std::string(), progress));
-      eyes.lambda.push_back(eye.lambda().value);
-      eyes.notes.insert(eyes.notes.end(), eye.notes().begin(), eye.notes().end());
-      eyes.by_level.push_back(std::move(eye).take_reconstructor());
-      continue;
-    }
-    const recon::Reconstructor& first = eyes.by_level.front();
-    recon::Objective objective = first.objective();
-    objective.lambda = TRY(choose_lambda(a, curve.solver, curve.basis, std::nullopt, level.sigma)).value;
-    recon::Plan plan = first.plan();
-    // What followed from lambda follows from this one.
-    plan.rho = curved.plan.rho;
-    if (curve.solver == recon::SolverKind::tsvd) plan.rank = 0;
-    // In double a factor is made anew every time: what is kept is in float32.
-    std::optional<recon::Factor> factor;
-    if (recon::uses_factor(curve.solver) && curve.precision == recon::Precision::f32) factor = first.factor();
-    eyes.lambda.push_back(objective.lambda);
-    eyes.by_level.push_back(TRY(recon::Reconstructor::create(a, objective, plan, std::move(factor), progress)));
+    curved.sigma = level.sigma;
+    ReadyEye eye = TRY(ReadyEye::make(curved, living, maker, progress));
+    eyes.lambda.push_back(eye.lambda().value);
+    eyes.by_level.push_back(std::move(eye).take_reconstructor());
   }
+  eyes.notes = maker.notes();
   return eyes;
 }
 

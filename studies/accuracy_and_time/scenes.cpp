@@ -7,7 +7,6 @@
 #include <numeric>
 #include <utility>
 
-#include "firmware/eye/conventional_eye.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "hal/sample_block.hpp"

@@ -6,14 +6,13 @@
 #include <limits>
 #include <utility>
 
-#include "firmware/eye/kept_factor.hpp"
 #include "firmware/eye/ready_eye.hpp"
+#include "firmware/eye/reconstructor_maker.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/penalty_rule.hpp"
-#include "recon/setup/quantised_response.hpp"
 #include "recon/solver_table.hpp"
 #include "studies/comparison/samples.hpp"
 #include "studies/named_kinds.hpp"
@@ -47,25 +46,24 @@ class Runner {
         samples_(samples),
         clock_(clock),
         progress_(progress),
-        op_(board.plan.op),
-        rounded_(op_ && recon::is_lossy(*op_) ? std::optional(recon::quantised(samples.response, *op_)) : std::nullopt),
-        response_(rounded_ ? *rounded_ : samples.response),
-        hash_(response_.content_hash()),
-        seeing_(static_cast<int>(response_.seeing_rows().size())) {}
+        maker_(samples.response, board.plan.op, board.cache(), ReconstructorMaker::Memory::remembers),
+        seeing_(static_cast<int>(maker_.response().seeing_rows().size())) {}
 
   Result<ComparedRow> run(const Contender& contender) {
     ComparedRow row;
     row.contender = contender;
     const std::int64_t began_ns = clock_.now_ns();
     row.lambda = TRY(lambda_of(contender));
-    const recon::Reconstructor solver = TRY(set_up(contender, row.lambda));
+    const recon::Objective objective{contender.basis, contender.constraint, board_.objective.lo, board_.objective.hi,
+                                     row.lambda};
+    const recon::Reconstructor solver = TRY(maker_.make(objective, plan_of(contender), progress_));
     row.setup_s = static_cast<double>(clock_.now_ns() - began_ns) * 1e-9;
     TRY(solve(solver, row));
     row.quality = TRY(quality_of(row.picture, samples_.truth));
     return row;
   }
 
-  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return maker_.notes(); }
 
  private:
   [[nodiscard]] recon::Plan plan_of(const Contender& contender) const {
@@ -90,30 +88,9 @@ class Runner {
   [[nodiscard]] Result<double> lambda_of(const Contender& contender) const {
     const bool boards = contender.basis == board_.objective.basis && shares_objective(contender.solver);
     const std::optional<double> of_board = boards && !options_.sigma ? board_.lambda : std::nullopt;
-    return TRY(choose_lambda(response_, contender.solver, contender.basis, options_.lambda ? options_.lambda : of_board,
-                             samples_.sigma))
+    return TRY(choose_lambda(maker_.response(), contender.solver, contender.basis,
+                             options_.lambda ? options_.lambda : of_board, samples_.sigma))
         .value;
-  }
-
-  Result<recon::Reconstructor> set_up(const Contender& contender, double lambda) {
-    const recon::Objective objective{contender.basis, contender.constraint, board_.objective.lo, board_.objective.hi,
-                                     lambda};
-    const recon::Plan plan = plan_of(contender);
-    if (!recon::uses_factor(contender.solver)) {
-      return recon::Reconstructor::create(response_, objective, plan, std::nullopt, progress_);
-    }
-    const recon::Factor wanted = recon::Reconstructor::wanted_factor(response_, objective, plan);
-    for (const recon::Factor& factor : factors_) {
-      if (factor.metric != wanted.metric || factor.rho != wanted.rho || factor.rank != wanted.rank) continue;
-      return recon::Reconstructor::create(response_, objective, plan, factor, progress_);
-    }
-    KeptFactor kept(board_.cache(), {hash_, wanted.rho, wanted.order, wanted.metric, wanted.rank});
-    auto made = TRY(recon::Reconstructor::create(response_, objective, plan, kept.take(), progress_));
-    if (kept.origin() != FactorOrigin::kept) kept.keep(made.factor());
-    notes_.insert(notes_.end(), kept.notes().begin(), kept.notes().end());
-    // tikhonov's goes with its lambda, which nobody shares.
-    if (contender.solver != recon::SolverKind::tikhonov) factors_.push_back(made.factor());
-    return made;
   }
 
   Result<void> solve(const recon::Reconstructor& reconstructor, ComparedRow& row) {
@@ -143,13 +120,8 @@ class Runner {
   const CompareSamples& samples_;
   const hal::Clock& clock_;
   const recon::Progress& progress_;
-  std::optional<recon::OperatorKind> op_;
-  std::optional<recon::Response> rounded_;  // as a lossy operator holds it
-  const recon::Response& response_;         // that solvers are set up with
-  std::uint64_t hash_;
+  ReconstructorMaker maker_;
   int seeing_;
-  std::vector<recon::Factor> factors_;
-  std::vector<std::string> notes_;
 };
 
 /// tsvd decomposes A A' whole: for an eye that is large and not symmetric that takes many minutes without a word.

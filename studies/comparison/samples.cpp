@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "calib/nominal.hpp"
-#include "firmware/eye/conventional_eye.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/response_file.hpp"

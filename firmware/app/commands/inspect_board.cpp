@@ -181,7 +181,7 @@ Result<void> add_board_figures(const Board& board, const recon::Progress& progre
   TRY(add_operator_figures(a, op, figures));
   if (progress) progress("lambda by rule", 0.0, 0.0);
   const recon::Factor wanted = TRY(add_rules(board, a, figures));
-  add_cache(board, {a.content_hash(), wanted.rho, wanted.order, wanted.metric, wanted.rank}, figures);
+  add_cache(board, factor_key(a, wanted), figures);
   return {};
 }
 

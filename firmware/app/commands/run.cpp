@@ -14,7 +14,6 @@
 #include "firmware/app/commands/run_report.hpp"
 #include "firmware/app/commands/run_source.hpp"
 #include "firmware/app/option_list.hpp"
-#include "firmware/eye/conventional_eye.hpp"
 #include "firmware/eye/ready_eye.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"

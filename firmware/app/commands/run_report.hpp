@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "firmware/app/report.hpp"
-#include "firmware/eye/kept_factor.hpp"
 #include "firmware/eye/picture_quality.hpp"
 #include "firmware/eye/ready_eye.hpp"
+#include "firmware/eye/reconstructor_maker.hpp"
 #include "firmware/operating_points/deadline_choice.hpp"
 #include "firmware/pipeline/run_summary.hpp"
 

@@ -1,0 +1,73 @@
+#include "firmware/eye/reconstructor_maker.hpp"
+
+#include <algorithm>
+
+#include "hal/try.hpp"
+#include "recon/setup/quantised_response.hpp"
+
+namespace compueye::firmware {
+
+std::string_view name(FactorOrigin origin) noexcept {
+  switch (origin) {
+    case FactorOrigin::kept:
+      return "kept";
+    case FactorOrigin::made:
+      return "made";
+    case FactorOrigin::replaced:
+      return "replaced";
+  }
+  return "made";
+}
+
+ReconstructorMaker::ReconstructorMaker(const recon::Response& response, std::optional<recon::OperatorKind> op,
+                                       std::string cache, Memory memory)
+    : response_(response), cache_(std::move(cache)), memory_(memory) {
+  if (op && recon::is_lossy(*op)) rounded_ = recon::quantised(response, *op);
+}
+
+hal::Result<recon::Reconstructor> ReconstructorMaker::make(const recon::Objective& objective, const recon::Plan& plan,
+                                                           const recon::Progress& progress) {
+  origin_ = FactorOrigin::made;
+  // In double a factor is made anew every time: what is kept is in float32.
+  if (!recon::uses_factor(plan.solver) || plan.precision != recon::Precision::f32) {
+    return recon::Reconstructor::create(response(), objective, plan, std::nullopt, progress);
+  }
+  const FactorKey key = factor_key(response(), recon::Reconstructor::wanted_factor(response(), objective, plan));
+  auto made = TRY(recon::Reconstructor::create(response(), objective, plan, made_before(key), progress));
+  if (origin_ != FactorOrigin::kept) keep(key, made.factor());
+  // tikhonov's goes with its lambda, which nobody shares.
+  const bool wanted_again = memory_ == Memory::remembers && plan.solver != recon::SolverKind::tikhonov;
+  const auto same = [&](const auto& known) { return known.first == key; };
+  if (wanted_again && std::none_of(remembered_.begin(), remembered_.end(), same)) {
+    remembered_.emplace_back(key, made.factor());
+  }
+  return made;
+}
+
+std::optional<recon::Factor> ReconstructorMaker::made_before(const FactorKey& key) {
+  for (const auto& [known, factor] : remembered_) {
+    if (known != key) continue;
+    origin_ = FactorOrigin::kept;
+    return factor;
+  }
+  if (cache_.empty()) return std::nullopt;
+  auto loaded = load_factor(cache_, key);
+  if (loaded) {
+    origin_ = FactorOrigin::kept;
+    return std::move(*loaded);
+  }
+  const hal::Error& error = loaded.error();
+  if (error.code == hal::ErrorCode::not_found) return std::nullopt;
+  if (error.code == hal::ErrorCode::stale || error.code == hal::ErrorCode::bad_format) origin_ = FactorOrigin::replaced;
+  notes_.push_back("the stored factor cannot be used and is made again: " + error.text());
+  return std::nullopt;
+}
+
+void ReconstructorMaker::keep(const FactorKey& key, const recon::Factor& factor) {
+  if (cache_.empty()) return;
+  if (auto stored = store_factor(cache_, key, factor); !stored) {
+    notes_.push_back("the factor cannot be kept, so the next run makes it again: " + stored.error().text());
+  }
+}
+
+}  // namespace compueye::firmware
