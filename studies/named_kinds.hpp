@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware/text/nearest_name.hpp"
+#include "firmware/text/words.hpp"
 #include "hal/result.hpp"
 #include "recon/option_names.hpp"
 

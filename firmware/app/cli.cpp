@@ -11,8 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "firmware/text/nearest_name.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 
 namespace compueye::firmware {
 namespace {

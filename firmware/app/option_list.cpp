@@ -9,8 +9,7 @@
 #include <system_error>
 
 #include "firmware/eye/settings/setting.hpp"
-#include "firmware/text/nearest_name.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "firmware/text/number_text.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 
 namespace compueye::firmware {
 namespace {

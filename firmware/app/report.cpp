@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "firmware/text/table.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -2,14 +2,124 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <numbers>
+#include <utility>
 
-#include "firmware/eye/settings/setting.hpp"
-#include "firmware/eye/settings/toml_document.hpp"
 #include "firmware/eye/source_kinds.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
+namespace {
+
+using hal::ErrorCode;
+using hal::Lattice;
+
+constexpr double deg = std::numbers::pi / 180.0;
+constexpr std::int64_t most_ommatidia = 65536;
+constexpr std::int64_t most_pixels = 16'777'216;
+
+hal::Result<void> check_lattice_keys(const Board& board) {
+  const Lattice lattice = board.eye.lattice;
+  const auto needs = [&](bool needed, std::string_view key) -> hal::Result<void> {
+    if (!needed || board.states("eye", key)) return {};
+    return hal::fail(ErrorCode::bad_format, board.place("eye", key),
+                     fmt::format("key '{}' is missing in [eye], a {} lattice needs it", key, hal::name(lattice)));
+  };
+  const auto excludes = [&](bool excluded, std::string_view key) -> hal::Result<void> {
+    if (!excluded || !board.states("eye", key)) return {};
+    return hal::fail(ErrorCode::mismatch, board.place("eye", key),
+                     fmt::format("{} means nothing in a {} lattice; remove the line or choose another lattice", key,
+                                 hal::name(lattice)));
+  };
+  const bool flat = lattice == Lattice::plane;
+  const bool pitched = flat || lattice == Lattice::cylinder;
+  TRY(needs(!flat, "interommatidial_angle_deg"));
+  TRY(needs(pitched, "pitch_mm"));
+  TRY(excludes(flat, "interommatidial_angle_deg"));
+  return excludes(!pitched, "pitch_mm");
+}
+
+hal::Result<void> check_sizes(const Board& board) {
+  const std::int64_t ommatidia = std::int64_t{board.eye.rows} * board.eye.columns;
+  if (ommatidia > most_ommatidia) {
+    return hal::fail(ErrorCode::out_of_range, board.place("eye", "rows"),
+                     fmt::format("rows = {} by columns = {} in [eye] are {} ommatidia, expected at most {}",
+                                 board.eye.rows, board.eye.columns, ommatidia, most_ommatidia));
+  }
+  const std::int64_t pixels = std::int64_t{board.object.rows} * board.object.cols;
+  if (pixels > most_pixels) {
+    return hal::fail(ErrorCode::out_of_range, board.place("object", "rows"),
+                     fmt::format("rows = {} by columns = {} in [object] are {} pixels, expected at most {}",
+                                 board.object.rows, board.object.cols, pixels, most_pixels));
+  }
+  return {};
+}
+
+/// hal names "eye.rows"; a person wants the line.
+hal::Result<void> with_line(const Board& board, hal::Result<void> checked) {
+  if (checked) return {};
+  const std::string field = checked.error().place;
+  const std::size_t dot = field.find('.');
+  if (dot == std::string::npos) return checked;
+  const std::string section = field.substr(0, dot), key = field.substr(dot + 1);
+  return hal::fail(checked.error().code, board.place(section, key),
+                   fmt::format("{} in [{}] {}", key, section, checked.error().sentence));
+}
+
+hal::Result<void> check_span(const Board& board) {
+  const hal::EyeGeometry& eye = board.eye;
+  if (eye.lattice == Lattice::plane) return {};
+  // The rows of a cylinder are stacked, not fanned out.
+  const int longest = eye.lattice == Lattice::cylinder ? eye.columns : std::max(eye.rows, eye.columns);
+  const double span_deg = (longest - 1) * eye.interommatidial_rad / deg;
+  if (span_deg < 360.0) return {};
+  return hal::fail(ErrorCode::out_of_range, board.place("eye", "interommatidial_angle_deg"),
+                   fmt::format("interommatidial_angle_deg = {:.6g} in [eye] spreads {} ommatidia over {:.6g} degrees, "
+                               "expected less than a full turn of 360",
+                               eye.interommatidial_rad / deg, longest, span_deg));
+}
+
+hal::Result<void> check_sensor(const Board& board) {
+  const hal::SensorSettings& sensor = board.sensor;
+  const int channels = board.eye.ommatidia();
+  if (!sensor.dead.empty() && sensor.dead.back() >= channels) {
+    return hal::fail(ErrorCode::out_of_range, board.place("sensor", "dead"),
+                     fmt::format("dead names channel {} in [sensor], but this eye has {} channels, 0 to {}",
+                                 sensor.dead.back(), channels, channels - 1));
+  }
+  if (sensor.dead.size() == static_cast<std::size_t>(channels)) {
+    return hal::fail(ErrorCode::out_of_range, board.place("sensor", "dead"),
+                     fmt::format("dead names all {} channels in [sensor], expected at least one that lives", channels));
+  }
+  const double saturated = sensor.saturation_share * (std::ldexp(1.0, sensor.bits) - 1.0);
+  if (sensor.dark_level_lsb >= saturated) {
+    const bool stated = board.states("sensor", "dark_level_lsb");
+    return hal::fail(
+        ErrorCode::mismatch, board.place("sensor", stated ? "dark_level_lsb" : "saturation_share"),
+        fmt::format("dark_level_lsb = {:.6g} in [sensor] leaves no code for light, expected less than {:.6g} "
+                    "(saturation_share of the highest code)",
+                    sensor.dark_level_lsb, saturated));
+  }
+  return {};
+}
+
+hal::Result<void> check_reconstruction(const Board& board) {
+  if (board.plan.warm_start && board.plan.solver != recon::SolverKind::pdhg) {
+    return hal::fail(ErrorCode::mismatch, board.place("reconstruction", "start"),
+                     "start = \"warm\" is given in [reconstruction] without solver = \"pdhg\", which alone keeps "
+                     "anything from frame to frame; set that or remove the line");
+  }
+  const recon::ConstraintKind constraint = board.objective.constraint;
+  if (!board.states("reconstruction", "box") || constraint == recon::ConstraintKind::box) return {};
+  return hal::fail(ErrorCode::mismatch, board.place("reconstruction", "box"),
+                   "box is given in [reconstruction] without constraint = \"box\"; set that or remove the line");
+}
+
+}  // namespace
 
 bool SourceSettings::simulated() const noexcept {
   return bus_of_kind(kind) == nullptr;
@@ -37,23 +147,14 @@ bool Board::overrules(std::string_view section, std::string_view key) const {
   return states(section, key) && place(section, key).starts_with("--");
 }
 
-hal::Result<Board> parse_board(std::string_view text, const std::string& file) {
-  const TomlDocument document = TRY(parse_toml(text, file));
-  TRY(check_document(document, file));
-  Board board;
-  board.file = file;
-  for (const Setting& setting : settings()) {
-    if (setting.fallback) setting.store(board, *setting.fallback);
-  }
-  const auto at = [&](int line) { return fmt::format("{}:{}", file, line); };
-  for (const TomlSection& section : document.sections) board.places.emplace(section.name, at(section.line));
-  for (const TomlEntry& entry : document.entries) {
-    board.places.emplace(entry.section + "." + entry.key, at(entry.line));
-    find_setting(entry.section, entry.key)->store(board, entry.value);
-  }
-  if (board.source.simulated() && board.source.serial.empty()) board.source.serial = "SIM0001";
-  TRY(check_board(board));
-  return board;
+hal::Result<void> check_board(const Board& board) {
+  TRY(check_lattice_keys(board));
+  TRY(check_sizes(board));
+  TRY(check_span(board));
+  TRY(with_line(board, board.eye.validate()));
+  TRY(with_line(board, board.object.validate()));
+  TRY(check_sensor(board));
+  return check_reconstruction(board);
 }
 
 }  // namespace compueye::firmware

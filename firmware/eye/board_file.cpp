@@ -12,7 +12,7 @@
 #include <system_error>
 #include <vector>
 
-#include "firmware/text/nearest_name.hpp"
+#include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {

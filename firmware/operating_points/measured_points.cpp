@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
-#include "recon/option_names.hpp"
 #include "recon/setup/factor.hpp"
 
 namespace compueye::firmware {
@@ -22,16 +22,14 @@ double nine_in_ten_of(const std::vector<double>& worst_last) {
 
 }  // namespace
 
+std::span<const recon::Named<Motion>> motion_names() noexcept {
+  static constexpr std::array<recon::Named<Motion>, 3> names{
+      {{"none", Motion::none}, {"still", Motion::still}, {"sprite", Motion::sprite}}};
+  return names;
+}
+
 std::string_view name(Motion motion) noexcept {
-  switch (motion) {
-    case Motion::none:
-      return "none";
-    case Motion::still:
-      return "still";
-    case Motion::sprite:
-      return "sprite";
-  }
-  return "none";
+  return motion_names()[static_cast<std::size_t>(motion)].name;
 }
 
 std::string title(const Curve& curve) {

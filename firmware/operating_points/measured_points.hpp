@@ -11,6 +11,7 @@
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/picture_quality.hpp"
 #include "firmware/operating_points/machine.hpp"
+#include "recon/option_names.hpp"
 #include "recon/reconstructor.hpp"
 
 namespace compueye::firmware {
@@ -21,6 +22,7 @@ enum class Motion : std::uint8_t {
   still,   ///< the same scene, with fresh noise
   sprite,  ///< the same scene but for a piece of it that comes in from the side
 };
+[[nodiscard]] std::span<const recon::Named<Motion>> motion_names() noexcept;
 [[nodiscard]] std::string_view name(Motion motion) noexcept;
 
 /// One curve of accuracy against time: everything that stays while the iterations grow.

@@ -34,8 +34,6 @@ constexpr int format_version = 1;
 // The words of the file.
 constexpr std::array<recon::Named<recon::Precision>, 2> precisions{
     {{"f32", recon::Precision::f32}, {"f64", recon::Precision::f64}}};
-const std::array<recon::Named<Motion>, 3> motions{
-    {{name(Motion::none), Motion::none}, {name(Motion::still), Motion::still}, {name(Motion::sprite), Motion::sprite}}};
 
 std::span<const recon::Named<recon::SolverKind>> words(recon::SolverKind) {
   return recon::solver_names();
@@ -50,7 +48,7 @@ std::span<const recon::Named<recon::Precision>> words(recon::Precision) {
   return precisions;
 }
 std::span<const recon::Named<Motion>> words(Motion) {
-  return motions;
+  return motion_names();
 }
 
 // The members of everything that is stored, once for both ways: `each` writes them in their order, or reads them back.

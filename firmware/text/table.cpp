@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 
 namespace compueye::firmware {
 namespace {

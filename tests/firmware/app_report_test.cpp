@@ -12,10 +12,9 @@
 #include <vector>
 
 #include "firmware/app/report.hpp"
-#include "firmware/text/nearest_name.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;

@@ -14,7 +14,7 @@
 #include "firmware/eye/source_kinds.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {

@@ -14,7 +14,7 @@
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/source_list.hpp"
 #include "firmware/text/number_text.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {

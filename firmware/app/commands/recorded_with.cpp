@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "drivers/recording/recording_file.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 
 namespace compueye::firmware {
 

@@ -14,7 +14,7 @@
 #include "drivers/recording/recording_reader.hpp"
 #include "firmware/app/command.hpp"
 #include "firmware/text/number_text.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {

@@ -10,7 +10,7 @@
 
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 #include "recon/option_names.hpp"
 
 namespace compueye::firmware {

@@ -8,9 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "firmware/text/nearest_name.hpp"
 #include "firmware/text/number_text.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "firmware/text/visible_text.hpp"
+#include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
 // Debian's shared library is built with exceptions, and toml++ keeps the two flavours apart by inline namespace; so

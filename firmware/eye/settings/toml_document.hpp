@@ -31,9 +31,4 @@ struct TomlDocument {
 /// Errors: bad_format with "file:line" as place; the sentence names the column and what the parser met.
 [[nodiscard]] hal::Result<TomlDocument> parse_toml(std::string_view text, const std::string& file);
 
-/// Every key of the document is known, is of the right type and in range, and no required key is missing. One fault is
-/// reported: the first unknown section, else the first bad line, else the first missing key (last, so that a misspelt
-/// key is told as that).
-[[nodiscard]] hal::Result<void> check_document(const TomlDocument& document, const std::string& file);
-
 }  // namespace compueye::firmware

@@ -1,8 +1,8 @@
-#include "firmware/operating_points/step_rule.hpp"
-
 #include <doctest/doctest.h>
 
 #include <vector>
+
+#include "firmware/operating_points/point_ladder.hpp"
 
 using namespace compueye::firmware;
 

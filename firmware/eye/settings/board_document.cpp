@@ -1,14 +1,14 @@
-#include "firmware/eye/settings/toml_document.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "firmware/eye/board.hpp"
 #include "firmware/eye/settings/setting.hpp"
-#include "firmware/text/nearest_name.hpp"
-#include "firmware/text/visible_text.hpp"
+#include "firmware/eye/settings/toml_document.hpp"
+#include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -93,8 +93,9 @@ hal::Result<void> nothing_missing(const TomlDocument& document, const std::strin
   return {};
 }
 
-}  // namespace
-
+/// Every key of the document is known, is of the right type and in range, and no required key is missing. One fault is
+/// reported: the first unknown section, else the first bad line, else the first missing key (last, so that a misspelt
+/// key is told as that).
 hal::Result<void> check_document(const TomlDocument& document, const std::string& file) {
   const auto at_line = [&](int line) {
     return [&file, line](hal::Error error) {
@@ -108,6 +109,27 @@ hal::Result<void> check_document(const TomlDocument& document, const std::string
     TRY(known_key(entry).and_then(good_value).map_error(at_line(entry.line)));
   }
   return nothing_missing(document, file);
+}
+
+}  // namespace
+
+hal::Result<Board> parse_board(std::string_view text, const std::string& file) {
+  const TomlDocument document = TRY(parse_toml(text, file));
+  TRY(check_document(document, file));
+  Board board;
+  board.file = file;
+  for (const Setting& setting : settings()) {
+    if (setting.fallback) setting.store(board, *setting.fallback);
+  }
+  const auto at = [&](int line) { return fmt::format("{}:{}", file, line); };
+  for (const TomlSection& section : document.sections) board.places.emplace(section.name, at(section.line));
+  for (const TomlEntry& entry : document.entries) {
+    board.places.emplace(entry.section + "." + entry.key, at(entry.line));
+    find_setting(entry.section, entry.key)->store(board, entry.value);
+  }
+  if (board.source.simulated() && board.source.serial.empty()) board.source.serial = "SIM0001";
+  TRY(check_board(board));
+  return board;
 }
 
 }  // namespace compueye::firmware
