@@ -21,9 +21,10 @@
 #include "recon/core/parts/vector_sums.hpp"
 #include "recon/reconstructor.hpp"
 #include "recon/setup/dct_tables.hpp"
+#include "recon/setup/inverse_tables.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
+#include "recon/setup/operator_list.hpp"
 #include "recon/setup/parity_classes.hpp"
-#include "recon/setup/problem_tables.hpp"
 
 using namespace compueye;
 namespace core = recon::core;
@@ -41,14 +42,15 @@ struct Part {
 
 /// What core::FrameProblem points at inside a Reconstructor, once more, for its parts to be called one by one.
 struct Operator {
-  recon::OwnedTables<float> tables;
+  recon::KeptTables tables;
+  core::LinearOperator<float> a;
   std::optional<recon::AlignedWorkspace> memory;
 
   explicit Operator(const recon::Response& seeing) {
-    static_cast<void>(recon::fill_operator(seeing, std::nullopt, tables));
+    a = recon::make_operator<float>(seeing, std::nullopt, tables).value();
     memory.emplace(view().scratch_size() * sizeof(float) + 64);
   }
-  [[nodiscard]] const core::LinearOperator<float>& view() const { return tables.problem.a; }
+  [[nodiscard]] const core::LinearOperator<float>& view() const { return a; }
   [[nodiscard]] float* scratch() const { return reinterpret_cast<float*>(memory->span().data()); }
 
   /// Multiplications and additions of one application.
@@ -94,13 +96,13 @@ Part measure_adjoint(Operator& a) {
 }
 
 Part measure_inverse(const recon::Response& seeing, const recon::Factor& factor) {
-  recon::OwnedTables<float> tables;
-  recon::fill_inverse(recon::ParityClasses(seeing.rows(), recon::find_mirror_symmetry(seeing)), factor.values, tables);
-  const core::ClassInverse<float>& h = tables.problem.inverse;
+  recon::KeptTables kept;
+  const recon::ParityClasses classes(seeing.rows(), recon::find_mirror_symmetry(seeing));
+  const auto h = recon::make_inverse(classes, factor.values.data(), kept);
   const auto x = some_numbers(h.order);
   std::vector<float> y(h.order), scratch(h.scratch_size());
   const auto entries = static_cast<double>(factor.values.size());
-  const auto shares = static_cast<double>(tables.class_share.size());
+  const auto shares = static_cast<double>(h.classes > 1 ? h.classes * h.order : 0);
   return {"inverse product", bench::median_ms([&] { core::multiply(h, x.data(), y.data(), scratch.data()); }),
           4.0 * (entries + 2.0 * static_cast<double>(h.order)) + 2.0 * 8.0 * shares, 4.0 * (entries + shares)};
 }

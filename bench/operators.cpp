@@ -19,7 +19,7 @@
 #include "firmware/text/table.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/core/operators/linear_operator.hpp"
-#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
 #include "recon/setup/running_sum_tables.hpp"
 
@@ -70,13 +70,12 @@ Timed time_eigen(const std::string& name, const bench::EigenBaseline& eigen, con
 }
 
 /// Table entries that a vector of rows shares count once.
-double taps_of(const recon::OwnedTables<float>& tables) {
-  const std::size_t sums = tables.sums.element.size(), runs = core::flops(tables.problem.a);
-  return static_cast<double>(sums > 0 ? sums : runs);
+double taps_of(const core::LinearOperator<float>& a) {
+  const core::RunningSums<float>& sums = a.sums;
+  return static_cast<double>(sums.tables > 0 ? sums.first[4 * sums.tables * sums.bands] : core::flops(a));
 }
 
-Timed time_ours(const std::string& name, const recon::OwnedTables<float>& tables, Vectors& v) {
-  const core::LinearOperator<float>& op = tables.problem.a;
+Timed time_ours(const std::string& name, const core::LinearOperator<float>& op, Vectors& v) {
   const recon::AlignedWorkspace memory(op.scratch_size() * sizeof(float) + 64);
   auto* scratch = reinterpret_cast<float*>(memory.span().data());
   Timed timed = time(
@@ -87,27 +86,27 @@ Timed time_ours(const std::string& name, const recon::OwnedTables<float>& tables
       });
   timed.bytes = static_cast<double>(core::bytes(op));
   timed.flops = static_cast<double>(core::flops(op));
-  timed.taps = taps_of(tables);
+  timed.taps = taps_of(op);
   return timed;
 }
 
 hal::Result<Timed> time_kind(const std::string& name, const recon::Response& a, recon::OperatorKind kind, Vectors& v) {
-  recon::OwnedTables<float> tables;
-  const recon::Response applied = recon::quantised(a, kind);
-  return recon::fill_operator(applied, kind, tables).map([&] { return time_ours(name, tables, v); });
+  recon::KeptTables kept;
+  return recon::make_operator<float>(recon::quantised(a, kind), kind, kept).map([&](const auto& op) {
+    return time_ours(name, op, v);
+  });
 }
 
 /// Running sums with fewer rows at once than the response would let them have.
 Timed time_running_sums(const std::string& name, const recon::Response& a, const recon::MirrorSymmetry& images,
                         const std::vector<std::int32_t>& transposed, Vectors& v) {
-  recon::OwnedTables<float> tables;
-  tables.sums = *recon::running_sum_tables<float>(a, images, transposed);
-  core::LinearOperator<float>& op = tables.problem.a;
+  const auto sums = *recon::running_sum_tables<float>(a, images, transposed);
+  core::LinearOperator<float> op;
   op.kind = recon::OperatorKind::running_sums;
   op.rows = static_cast<std::size_t>(a.rows());
   op.cols = static_cast<std::size_t>(a.cols());
-  op.sums = tables.sums.view;
-  return time_ours(name, tables, v);
+  op.sums = sums.view;
+  return time_ours(name, op, v);
 }
 
 hal::Result<std::vector<Timed>> measure_plain(const recon::Response& a, Vectors& v) {

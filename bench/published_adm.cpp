@@ -15,6 +15,7 @@
 #include "recon/aligned_workspace.hpp"
 #include "recon/metrics.hpp"
 #include "recon/reconstructor.hpp"
+#include "recon/solver_list.hpp"
 #include "sim/random.hpp"
 
 using namespace compueye;
@@ -32,9 +33,9 @@ struct Way {
   int iterations;
 };
 
-constexpr Way ways[] = {{"as published", recon::SolverKind::adm_as_published, false, 9999},
-                        {"as published, A / ||A||", recon::SolverKind::adm_as_published, true, 9999},
-                        {"adm, 1000 iterations", recon::SolverKind::adm, false, 1000}};
+const Way ways[] = {{"as published", recon::solver_named("adm as published"), false, 9999},
+                    {"as published, A / ||A||", recon::solver_named("adm as published"), true, 9999},
+                    {"adm, 1000 iterations", recon::solver_named("adm"), false, 1000}};
 
 struct Figures {
   double acceptance_deg = 0.0;

@@ -16,6 +16,7 @@
 #include "recon/aligned_workspace.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/reconstructor.hpp"
+#include "recon/solver_list.hpp"
 #include "sim/built_in_scenes.hpp"
 
 using namespace compueye;
@@ -125,7 +126,7 @@ hal::Result<std::vector<Figures>> measure_all() {
   recon::Objective objective;
   objective.basis = recon::BasisKind::dct;
   objective.constraint = recon::ConstraintKind::box;
-  const auto lambda = recon::lambda_by_rule(*response, recon::SolverKind::admm, objective.basis, bench::read_noise);
+  const auto lambda = recon::lambda_by_rule(*response, recon::solver_named("admm"), objective.basis, bench::read_noise);
   if (!lambda) return tl::unexpected(lambda.error());
   objective.lambda = *lambda;
   recon::Plan plan;

@@ -23,8 +23,10 @@
 #include "recon/core/operators/linear_operator.hpp"
 #include "recon/option_names.hpp"
 #include "recon/reconstructor.hpp"
-#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/basis_list.hpp"
+#include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
+#include "recon/solver_list.hpp"
 #include "recon/worker_threads.hpp"
 
 using namespace compueye;
@@ -53,29 +55,28 @@ std::vector<float> some_numbers(std::size_t count) {
   return v;
 }
 
-/// Times `work` with the tables' crew set to one and to two.
-Shared time_both(std::string name, recon::OwnedTables<float>& tables, recon::WorkerThreads& two,
-                 const std::function<void()>& work) {
+/// Times `work` with `crew`, which it works with, set to one and to two.
+Shared time_both(std::string name, core::Crew& crew, recon::WorkerThreads& two, const std::function<void()>& work) {
   Shared shared{std::move(name)};
-  tables.problem.employ({});
+  crew = {};
   shared.alone_us = 1e3 * bench::median_ms(work);
-  tables.problem.employ(two.crew());
+  crew = two.crew();
   shared.by_two_us = 1e3 * bench::median_ms(work);
   return shared;
 }
 
 hal::Result<void> time_operator(const std::string& name, const recon::Response& a, recon::OperatorKind kind,
                                 recon::WorkerThreads& two, std::vector<Shared>& all) {
-  recon::OwnedTables<float> tables;
-  auto filled = recon::fill_operator(recon::quantised(a, kind), kind, tables);
-  if (!filled) return filled;
-  const core::LinearOperator<float>& op = tables.problem.a;
-  tables.problem.employ(two.crew());  // more scratch than one
+  recon::KeptTables kept;
+  auto made = recon::make_operator<float>(recon::quantised(a, kind), kind, kept);
+  if (!made) return tl::unexpected(made.error());
+  core::LinearOperator<float>& op = *made;
+  op.crew = two.crew();  // more scratch than one
   const recon::AlignedWorkspace memory(op.scratch_size() * sizeof(float) + 64);
   auto* scratch = reinterpret_cast<float*>(memory.span().data());
   std::vector<float> x = some_numbers(op.cols), y = some_numbers(op.rows), x_out(op.cols), y_out(op.rows);
-  all.push_back(time_both("A, " + name, tables, two, [&] { core::forward(op, x.data(), y_out.data(), scratch); }));
-  all.push_back(time_both("A', " + name, tables, two, [&] {
+  all.push_back(time_both("A, " + name, op.crew, two, [&] { core::forward(op, x.data(), y_out.data(), scratch); }));
+  all.push_back(time_both("A', " + name, op.crew, two, [&] {
     std::fill(x_out.begin(), x_out.end(), 0.0F);
     core::adjoint_accumulate(op, y.data(), x_out.data(), scratch);
   }));
@@ -83,12 +84,11 @@ hal::Result<void> time_operator(const std::string& name, const recon::Response& 
 }
 
 Shared time_dct(const bench::Eye& eye, recon::WorkerThreads& two) {
-  recon::OwnedTables<float> tables;
-  recon::fill_basis(recon::BasisKind::dct, eye.plane.rows, eye.plane.cols, tables);
-  tables.problem.employ(two.crew());
-  const core::Basis<float>& psi = tables.problem.psi;
+  recon::KeptTables kept;
+  auto psi = recon::make_basis<float>(recon::BasisKind::dct, eye.plane.rows, eye.plane.cols, kept);
+  psi.dct.crew = two.crew();
   std::vector<float> scratch(psi.scratch_size()), x = some_numbers(psi.pixels()), c(psi.pixels());
-  return time_both("DCT there and back", tables, two, [&] {
+  return time_both("DCT there and back", psi.dct.crew, two, [&] {
     core::analyse(psi, x.data(), c.data(), scratch.data());
     core::synthesise(psi, c.data(), x.data(), scratch.data());
   });
@@ -146,9 +146,9 @@ hal::Result<Measured> measure() {
   });
   if (!timed) return tl::unexpected(timed.error());
   all.work.push_back(time_dct(eye, **two));
-  for (const auto& [solver, basis] : {std::pair{recon::SolverKind::admm, recon::BasisKind::dct},
-                                      {recon::SolverKind::pdhg, recon::BasisKind::dct},
-                                      {recon::SolverKind::pdhg, recon::BasisKind::tv}}) {
+  for (const auto& [solver, basis] : {std::pair{recon::solver_named("admm"), recon::BasisKind::dct},
+                                      {recon::solver_named("pdhg"), recon::BasisKind::dct},
+                                      {recon::solver_named("pdhg"), recon::BasisKind::tv}}) {
     auto shared = time_iteration(*nominal, solver, basis);
     if (!shared) return tl::unexpected(std::move(shared.error()));
     all.work.push_back(std::move(*shared));

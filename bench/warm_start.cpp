@@ -18,6 +18,7 @@
 #include "recon/aligned_workspace.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/reconstructor.hpp"
+#include "recon/solver_list.hpp"
 #include "sim/built_in_scenes.hpp"
 #include "sim/random.hpp"
 
@@ -114,9 +115,9 @@ hal::Result<std::vector<Line>> measure() {
       recon::Objective objective;
       objective.basis = basis;
       objective.constraint = recon::ConstraintKind::box;
-      objective.lambda = recon::lambda_by_rule(*response, recon::SolverKind::pdhg, basis, sigma).value();
+      objective.lambda = recon::lambda_by_rule(*response, recon::solver_named("pdhg"), basis, sigma).value();
       recon::Plan plan;
-      plan.solver = recon::SolverKind::pdhg;
+      plan.solver = recon::solver_named("pdhg");
       auto cold = recon::Reconstructor::create(*response, objective, plan, factor);
       if (!cold) return tl::unexpected(cold.error());
       factor = cold->factor();

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "recon/aligned_workspace.hpp"
+#include "recon/setup/solver_row.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -86,9 +87,9 @@ class RiskSearch {
     return {};
   }
 
-  /// Tikhonov's factor goes with its lambda, and that of double precision is not kept.
+  /// A factor may go with its lambda, and that of double precision is not kept.
   [[nodiscard]] bool reusable_factor() const noexcept {
-    return plan_.solver == SolverKind::admm && plan_.precision == Precision::f32;
+    return uses_factor(plan_.solver) && plan_.solver->rho != RhoUse::lambda && plan_.precision == Precision::f32;
   }
 
   /// A x of the picture that the samples give.

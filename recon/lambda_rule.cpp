@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "recon/setup/atom_norms.hpp"
+#include "recon/setup/solver_row.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -48,14 +49,14 @@ hal::Result<double> lambda_by_rule(const Response& response, SolverKind solver, 
     return hal::fail(hal::ErrorCode::out_of_range, "sigma",
                      "is " + std::to_string(sigma) + ", expected a finite number of 0 or more");
   }
-  const bool by_atoms = solver == SolverKind::omp;
+  const bool by_atoms = solver->lambda == LambdaUse::atoms;
   if (by_atoms && basis != BasisKind::identity && response.image_rows() == 0) {
     return hal::fail(hal::ErrorCode::mismatch, "size",
                      "of the picture is not known, the response has " + std::to_string(response.cols()) + " columns");
   }
   const double scale = by_atoms ? median_atom_norm(response, basis) : lambda_scale(response, basis);
   const double size = scale > 0.0 ? scale : 1.0;
-  if (solver == SolverKind::tikhonov || solver == SolverKind::tsvd) {
+  if (solver->lambda == LambdaUse::variances) {
     const double deviation = std::max(sigma / expected_pixel_deviation, least_share_of_scale * size);
     return deviation * deviation;
   }

@@ -1,36 +1,15 @@
 #include "recon/option_names.hpp"
 
 #include <array>
+#include <vector>
+
+#include "recon/setup/basis_list.hpp"
+#include "recon/setup/operator_list.hpp"
+#include "recon/solver_list.hpp"
 
 namespace compueye::recon {
 namespace {
 
-constexpr std::array<Named<SolverKind>, 8> solvers{{
-    {"admm", SolverKind::admm},
-    {"adm", SolverKind::adm},
-    {"cp", SolverKind::chambolle_pock},
-    {"fista", SolverKind::fista},
-    {"omp", SolverKind::omp},
-    {"pdhg", SolverKind::pdhg},
-    {"tikhonov", SolverKind::tikhonov},
-    {"tsvd", SolverKind::tsvd},
-}};
-constexpr std::array<Named<BasisKind>, 6> bases{{
-    {"identity", BasisKind::identity},
-    {"dct", BasisKind::dct},
-    {"haar", BasisKind::haar},
-    {"db4", BasisKind::db4},
-    {"dft", BasisKind::dft},
-    {"tv", BasisKind::tv},
-}};
-constexpr std::array<Named<OperatorKind>, 6> operators{{
-    {"dense", OperatorKind::dense},
-    {"csr", OperatorKind::csr},
-    {"running-sums", OperatorKind::running_sums},
-    {"dense-runs", OperatorKind::dense_runs},
-    {"dense-runs-bf16", OperatorKind::dense_runs_bf16},
-    {"dense-runs-int8", OperatorKind::dense_runs_int8},
-}};
 constexpr std::array<Named<ConstraintKind>, 3> constraints{{
     {"none", ConstraintKind::none},
     {"nonnegative", ConstraintKind::nonnegative},
@@ -48,22 +27,40 @@ std::string_view name_in(std::span<const Named<Kind>> names, Kind kind) noexcept
 }  // namespace
 
 std::span<const Named<SolverKind>> solver_names() noexcept {
-  return solvers;
+  static const std::vector<Named<SolverKind>> names = [] {
+    std::vector<Named<SolverKind>> all;
+    for (const SolverKind solver : solvers()) all.push_back({solver->name, solver});
+    return all;
+  }();
+  return names;
 }
+
 std::span<const Named<BasisKind>> basis_names() noexcept {
-  return bases;
+  static const std::vector<Named<BasisKind>> names = [] {
+    std::vector<Named<BasisKind>> all;
+    for (const BasisRow& basis : bases()) all.push_back({basis.name, basis.kind});
+    return all;
+  }();
+  return names;
 }
+
 std::span<const Named<ConstraintKind>> constraint_names() noexcept {
   return constraints;
 }
 
 std::span<const Named<OperatorKind>> operator_names() noexcept {
-  return operators;
+  static const std::vector<Named<OperatorKind>> names = [] {
+    std::vector<Named<OperatorKind>> all;
+    for (const OperatorRow& row : operators()) {
+      if (!row.word.empty()) all.push_back({row.word, row.kind});
+    }
+    return all;
+  }();
+  return names;
 }
 
 std::string_view name(SolverKind kind) noexcept {
-  if (kind == SolverKind::adm_as_published) return "adm as published";
-  return name_in(solver_names(), kind);
+  return kind == nullptr ? "unknown" : kind->name;
 }
 std::string_view name(BasisKind kind) noexcept {
   return name_in(basis_names(), kind);
@@ -73,25 +70,17 @@ std::string_view name(ConstraintKind kind) noexcept {
 }
 
 std::string_view name(OperatorKind kind) noexcept {
-  switch (kind) {
-    case OperatorKind::dense:
-      return "dense";
-    case OperatorKind::csr:
-      return "csr";
-    case OperatorKind::running_sums:
-      return "running sums";
-    case OperatorKind::running_sums_symmetric:
-      return "running sums, four rows at once";
-    case OperatorKind::running_sums_diagonal:
-      return "running sums, eight rows at once";
-    case OperatorKind::dense_runs:
-      return "dense runs";
-    case OperatorKind::dense_runs_bf16:
-      return "dense runs in bf16";
-    case OperatorKind::dense_runs_int8:
-      return "dense runs in int8";
+  for (const OperatorRow& row : operators()) {
+    if (row.kind == kind) return row.name;
   }
   return "unknown";
+}
+
+std::optional<OperatorKind> operator_called(std::string_view name_or_word) noexcept {
+  for (const OperatorRow& row : operators()) {
+    if (!name_or_word.empty() && (row.name == name_or_word || row.word == name_or_word)) return row.kind;
+  }
+  return std::nullopt;
 }
 
 }  // namespace compueye::recon

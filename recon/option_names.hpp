@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "recon/reconstructor.hpp"
+#include "recon/plan.hpp"
 
 namespace compueye::recon {
 
@@ -33,7 +33,7 @@ template <class Kind>
   return std::nullopt;
 }
 
-/// Without adm as published, which is no solver to choose but one to be shown beside the others.
+/// Without those that are only shown beside the others.
 [[nodiscard]] std::span<const Named<SolverKind>> solver_names() noexcept;
 [[nodiscard]] std::span<const Named<BasisKind>> basis_names() noexcept;
 [[nodiscard]] std::span<const Named<ConstraintKind>> constraint_names() noexcept;
@@ -44,5 +44,8 @@ template <class Kind>
 [[nodiscard]] std::string_view name(BasisKind kind) noexcept;
 [[nodiscard]] std::string_view name(ConstraintKind kind) noexcept;
 [[nodiscard]] std::string_view name(OperatorKind kind) noexcept;
+
+/// The form of A that a name or a word stands for.
+[[nodiscard]] std::optional<OperatorKind> operator_called(std::string_view name_or_word) noexcept;
 
 }  // namespace compueye::recon

@@ -1,4 +1,5 @@
 #include "bench/convergence/cases.hpp"
+#include "recon/solver_list.hpp"
 
 #include <utility>
 
@@ -6,7 +7,7 @@ namespace compueye::bench {
 namespace {
 
 using recon::BasisKind;
-using recon::SolverKind;
+using recon::solver_named;
 
 FrameCase make_case(std::string name, const Eye& eye, std::string scene, BasisKind basis, double asked_ms,
                     double aimed_ms) {
@@ -16,7 +17,7 @@ FrameCase make_case(std::string name, const Eye& eye, std::string scene, BasisKi
   c.scenes.name = std::move(scene);
   c.objective.basis = basis;
   c.objective.constraint = recon::ConstraintKind::nonnegative;
-  c.plan.solver = SolverKind::pdhg;
+  c.plan.solver = solver_named("pdhg");
   c.plan.max_reweighted = 0;
   c.asked_ms = asked_ms;
   c.aimed_ms = aimed_ms;
@@ -25,7 +26,7 @@ FrameCase make_case(std::string name, const Eye& eye, std::string scene, BasisKi
 
 FrameCase small(std::string name, bool measured, double asked_us, double aimed_us) {
   FrameCase c = make_case(std::move(name), eye_8x8(), "dots", BasisKind::identity, 1e-3 * asked_us, 1e-3 * aimed_us);
-  c.plan.solver = SolverKind::admm;
+  c.plan.solver = solver_named("admm");
   c.scenes.count = 300;
   c.measured = measured;
   c.most = 150;

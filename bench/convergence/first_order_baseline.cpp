@@ -8,12 +8,14 @@
 #include "bench/eigen_baseline.hpp"
 #include "bench/timing.hpp"
 #include "calib/nominal.hpp"
+#include "recon/solver_list.hpp"
 
 namespace compueye::bench {
 namespace {
 
 using recon::BasisKind;
 using recon::ConstraintKind;
+using recon::solver_named;
 using recon::SolverKind;
 
 constexpr int most_of_ours = 60;
@@ -27,11 +29,11 @@ struct Entry {
   double forwards = 1.0;  ///< products with A an iteration; one with A' each
 };
 
-constexpr Entry entries[] = {
-    {"FISTA, DCT", SolverKind::fista, BasisKind::dct, ConstraintKind::none},
-    {"FISTA, pixels, x >= 0", SolverKind::fista, BasisKind::identity, ConstraintKind::nonnegative},
+const Entry entries[] = {
+    {"FISTA, DCT", solver_named("fista"), BasisKind::dct, ConstraintKind::none},
+    {"FISTA, pixels, x >= 0", solver_named("fista"), BasisKind::identity, ConstraintKind::nonnegative},
     // Its steepest descent step looks at A' of the residual and at A of that.
-    {"ADM as published, DCT", SolverKind::adm_as_published, BasisKind::dct, ConstraintKind::none, 2.0},
+    {"ADM as published, DCT", solver_named("adm as published"), BasisKind::dct, ConstraintKind::none, 2.0},
 };
 
 struct Products {
@@ -72,7 +74,7 @@ hal::Result<FirstOrderBaseline> measure(const recon::Response& response, const E
   objective.basis = BasisKind::dct;
   objective.constraint = ConstraintKind::nonnegative;
   recon::Plan plan;
-  plan.solver = SolverKind::pdhg;
+  plan.solver = solver_named("pdhg");
   plan.max_reweighted = 0;
   auto ours = make_solvers(response, objective, plan, samples);
   if (!ours) return tl::unexpected(ours.error());

@@ -9,6 +9,7 @@
 #include "bench/timing.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/lambda_rule.hpp"
+#include "recon/solver_list.hpp"
 #include "sim/built_in_scenes.hpp"
 #include "sim/random.hpp"
 
@@ -114,7 +115,7 @@ hal::Result<std::vector<recon::Reconstructor>> make_solvers(const recon::Respons
   const bool same =
       std::all_of(samples.begin(), samples.end(), [&](const Sample& s) { return s.sigma == samples.front().sigma; });
   for (const Sample& sample : samples) {
-    const auto lambda = recon::lambda_by_rule(response, recon::SolverKind::admm, objective.basis, sample.sigma);
+    const auto lambda = recon::lambda_by_rule(response, recon::solver_named("admm"), objective.basis, sample.sigma);
     if (!lambda) return tl::unexpected(lambda.error());
     objective.lambda = *lambda;
     auto made = recon::Reconstructor::create(response, objective, plan, factor);

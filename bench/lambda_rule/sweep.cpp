@@ -10,6 +10,7 @@
 #include "recon/lambda_by_risk.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/metrics.hpp"
+#include "recon/solver_list.hpp"
 #include "sim/built_in_scenes.hpp"
 #include "sim/optics.hpp"
 #include "sim/random.hpp"
@@ -71,7 +72,7 @@ double SweptEye::nmse_by_rule(const std::string& scene, std::uint64_t seed, doub
 }
 
 double SweptEye::rule(double sigma) const {
-  return recon::lambda_by_rule(response_, recon::SolverKind::admm, case_.basis, sigma).value();
+  return recon::lambda_by_rule(response_, recon::solver_named("admm"), case_.basis, sigma).value();
 }
 
 std::vector<float> SweptEye::samples(const std::string& scene, const hal::Image& truth, std::uint64_t seed,

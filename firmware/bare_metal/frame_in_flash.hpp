@@ -4,7 +4,7 @@
 
 namespace compueye::bare_metal {
 
-/// A frozen frame (recon/core/parts/frozen_frame.hpp), put into the image as constant data when it is built.
+/// A frozen frame (recon/core/frame/frozen_frame.hpp), put into the image as constant data when it is built.
 extern "C" const std::byte frame_in_flash[];
 extern "C" const std::byte frame_in_flash_end[];
 

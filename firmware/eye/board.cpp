@@ -11,6 +11,7 @@
 
 #include "firmware/eye/source_kinds.hpp"
 #include "hal/try.hpp"
+#include "recon/solver_list.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -108,10 +109,12 @@ hal::Result<void> check_sensor(const Board& board) {
 }
 
 hal::Result<void> check_reconstruction(const Board& board) {
-  if (board.plan.warm_start && board.plan.solver != recon::SolverKind::pdhg) {
-    return hal::fail(ErrorCode::mismatch, board.place("reconstruction", "start"),
-                     "start = \"warm\" is given in [reconstruction] without solver = \"pdhg\", which alone keeps "
-                     "anything from frame to frame; set that or remove the line");
+  if (board.plan.warm_start && !board.plan.solver->starts_warm()) {
+    return hal::fail(
+        ErrorCode::mismatch, board.place("reconstruction", "start"),
+        fmt::format("start = \"warm\" is given in [reconstruction] without solver = \"{}\", which alone keeps "
+                    "anything from frame to frame; set that or remove the line",
+                    recon::names_of_solvers([](const auto& row) { return row.starts_warm(); })));
   }
   const recon::ConstraintKind constraint = board.objective.constraint;
   if (!board.states("reconstruction", "box") || constraint == recon::ConstraintKind::box) return {};

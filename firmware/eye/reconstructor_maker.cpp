@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "hal/try.hpp"
+#include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
+#include "recon/setup/solver_row.hpp"
 
 namespace compueye::firmware {
 
@@ -35,8 +37,8 @@ hal::Result<recon::Reconstructor> ReconstructorMaker::make(const recon::Objectiv
   const FactorKey key = factor_key(response(), recon::Reconstructor::wanted_factor(response(), objective, plan));
   auto made = TRY(recon::Reconstructor::create(response(), objective, plan, made_before(key), progress));
   if (origin_ != FactorOrigin::kept) keep(key, made.factor());
-  // tikhonov's goes with its lambda, which nobody shares.
-  const bool wanted_again = memory_ == Memory::remembers && plan.solver != recon::SolverKind::tikhonov;
+  // One that goes with its lambda is shared by nobody.
+  const bool wanted_again = memory_ == Memory::remembers && plan.solver->rho != recon::RhoUse::lambda;
   const auto same = [&](const auto& known) { return known.first == key; };
   if (wanted_again && std::none_of(remembered_.begin(), remembered_.end(), same)) {
     remembered_.emplace_back(key, made.factor());

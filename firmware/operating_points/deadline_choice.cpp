@@ -9,6 +9,7 @@
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
+#include "recon/solver_list.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -158,8 +159,7 @@ hal::Result<DeadlineChoice> fit_deadline(double deadline_ms, double period_ms, c
   const SolveTime time = TRY(measure_solve_time(solve_ns, most));
   const DeadlineChoice choice = choose_iterations(deadline_ms, period_ms, time, most);
   // A direct solver has nothing to leave out: its one step is what it is.
-  const recon::SolverKind kind = eye.reconstructor().plan().solver;
-  if (kind == recon::SolverKind::tikhonov || kind == recon::SolverKind::tsvd) return choice;
+  if (eye.reconstructor().plan().solver->direct) return choice;
   TRY(eye.set_iterations(choice.iterations));
   return choice;
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "recon/setup/factor.hpp"
+#include "recon/solver_list.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -34,7 +35,7 @@ std::string_view name(Motion motion) noexcept {
 
 std::string title(const Curve& curve) {
   std::string text(recon::name(curve.solver));
-  if (curve.solver != recon::SolverKind::tikhonov && curve.solver != recon::SolverKind::tsvd) {
+  if (!curve.solver->direct) {
     text += ' ';
     text += recon::name(curve.basis);
   }

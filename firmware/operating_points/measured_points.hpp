@@ -27,7 +27,7 @@ enum class Motion : std::uint8_t {
 
 /// One curve of accuracy against time: everything that stays while the iterations grow.
 struct Curve {
-  recon::SolverKind solver = recon::SolverKind::admm;
+  recon::SolverKind solver = recon::default_solver();
   recon::BasisKind basis = recon::BasisKind::identity;
   recon::ConstraintKind constraint = recon::ConstraintKind::none;
   recon::Precision precision = recon::Precision::f32;

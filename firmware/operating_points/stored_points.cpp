@@ -219,11 +219,7 @@ struct Reader {
 
   static recon::OperatorKind operator_from(const Json& from) {
     const auto word = from.get<std::string>();
-    constexpr int most_kinds = 256;  // of an enumeration in eight bits
-    for (int k = 0; k < most_kinds; ++k) {
-      const auto kind = static_cast<recon::OperatorKind>(k);
-      if (word != "unknown" && recon::name(kind) == word) return kind;
-    }
+    if (const auto kind = recon::operator_called(word)) return *kind;
     throw std::out_of_range(fmt::format("operator is '{}'", word));
   }
 };

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "hal/frame_sink.hpp"
-#include "recon/core/parts/frame_info.hpp"
+#include "recon/core/frame/frame_info.hpp"
 
 namespace compueye::firmware {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hal/sample_block.hpp"
-#include "recon/core/parts/frame_info.hpp"
+#include "recon/core/frame/frame_info.hpp"
 
 namespace compueye::firmware {
 

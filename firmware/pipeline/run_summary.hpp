@@ -9,7 +9,7 @@
 #include "hal/accounting.hpp"
 #include "hal/counter.hpp"
 #include "hal/result.hpp"
-#include "recon/core/parts/frame_info.hpp"
+#include "recon/core/frame/frame_info.hpp"
 
 namespace compueye::firmware {
 

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recon/core/bases/basis.hpp"
-#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/basis_list.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -19,13 +18,14 @@ std::vector<double> squared_atom_norms(const Response& response, BasisKind basis
     }
     return squares;
   }
-  OwnedTables<double> tables;
-  fill_basis(basis == BasisKind::tv ? BasisKind::dct : basis, response.image_rows(), response.image_cols(), tables);
-  std::vector<double> scratch(tables.problem.psi.scratch_size());
+  KeptTables kept;
+  const auto psi = make_basis<double>(basis == BasisKind::tv ? BasisKind::dct : basis, response.image_rows(),
+                                      response.image_cols(), kept);
+  std::vector<double> scratch(psi.scratch_size());
   for (const std::int32_t m : response.seeing_rows()) {
     std::fill(row.begin(), row.end(), 0.0);
     response.for_each_in_row(m, [&](std::int32_t k, double v) { row[static_cast<std::size_t>(k)] = v; });
-    core::analyse(tables.problem.psi, row.data(), coefficients.data(), scratch.data());
+    core::analyse(psi, row.data(), coefficients.data(), scratch.data());
     for (std::size_t k = 0; k < n; ++k) squares[k] += coefficients[k] * coefficients[k];
   }
   return squares;

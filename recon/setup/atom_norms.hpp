@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "recon/core/parts/frame_info.hpp"
+#include "recon/core/bases/basis.hpp"
 #include "recon/response.hpp"
 
 namespace compueye::recon {

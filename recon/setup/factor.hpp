@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hal/result.hpp"
-#include "recon/core/parts/frame_info.hpp"
+#include "recon/core/bases/basis.hpp"
 #include "recon/response.hpp"
 
 namespace compueye::recon {
@@ -20,17 +20,6 @@ enum class MetricKind : std::uint8_t { identity, smoothing };
 
 [[nodiscard]] constexpr MetricKind metric_of(BasisKind basis) noexcept {
   return basis == BasisKind::tv ? MetricKind::smoothing : MetricKind::identity;
-}
-
-/// Whether a solver works with a cached factor at all.
-[[nodiscard]] constexpr bool uses_factor(SolverKind solver) noexcept {
-  return solver == SolverKind::admm || solver == SolverKind::adm || solver == SolverKind::tikhonov ||
-         solver == SolverKind::pdhg;
-}
-
-/// The metric of the factor that a solver keeps: modes are always those of A A'.
-[[nodiscard]] constexpr MetricKind metric_of(SolverKind solver, BasisKind basis) noexcept {
-  return solver == SolverKind::pdhg ? MetricKind::identity : metric_of(basis);
 }
 
 /// What makes a frame cheap, made in double, kept in float32, and worth storing: it is the slow part of setting up a

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "recon/core/parts/metric.hpp"
+#include "recon/core/frame/metric.hpp"
 #include "recon/response.hpp"
 #include "recon/setup/factor.hpp"
 #include "recon/setup/running_sum_tables.hpp"

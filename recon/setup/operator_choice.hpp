@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "hal/result.hpp"
-#include "recon/core/parts/frame_info.hpp"
+#include "recon/core/operators/linear_operator.hpp"
 #include "recon/response.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 

@@ -6,14 +6,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "recon/setup/deflation_rule.hpp"
+#include "recon/setup/solver_row.hpp"
 
 namespace compueye::recon {
 namespace {
 
 constexpr double share_of_column_norm = 0.06;
 constexpr double share_for_differences = 0.1;
-constexpr double share_with_few_modes = 0.021;
 
 /// ||A D'||_F^2: over each row as a picture, the squared differences of neighbouring pixels. (a - b)^2 summed over
 /// pairs is each square as often as it has neighbours, less twice the products.
@@ -40,19 +39,20 @@ double squared_difference_norm(const Response& response) {
 }  // namespace
 
 double resolve_rho(const Response& response, const Objective& objective, const Plan& plan) {
-  if (plan.solver == SolverKind::tikhonov) return objective.lambda;
+  if (plan.solver->rho == RhoUse::lambda) return objective.lambda;
   if (plan.rho > 0.0) return plan.rho;
-  const double squares = response.squared_norm();
-  const double by_columns = share_of_column_norm * squares / response.cols();
-  const auto order = static_cast<int>(response.seeing_rows().size());
-  if (plan.solver == SolverKind::pdhg && resolve_rank(plan, order) < order) {
-    return share_with_few_modes * squares / response.cols();
-  }
-  if (metric_of(plan.solver, objective.basis) == MetricKind::identity) return by_columns;
+  if (plan.solver->rho_by_rule != nullptr) return plan.solver->rho_by_rule(response, objective, plan);
+  const double by_columns = rho_by_columns(response);
+  if (metric_of(objective.basis) == MetricKind::identity) return by_columns;
   const double differences = squared_difference_norm(response);
   // Fields that cover the picture evenly have no edge at all.
-  const double by_edges = share_for_differences * std::sqrt(squares) * std::sqrt(std::max(differences, 0.0));
+  const double by_edges =
+      share_for_differences * std::sqrt(response.squared_norm()) * std::sqrt(std::max(differences, 0.0));
   return by_edges > 1e-3 * by_columns * response.cols() ? by_edges / response.cols() : by_columns;
+}
+
+double rho_by_columns(const Response& response) {
+  return share_of_column_norm * response.squared_norm() / response.cols();
 }
 
 }  // namespace compueye::recon

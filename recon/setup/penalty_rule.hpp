@@ -1,10 +1,12 @@
 #pragma once
 
-#include "recon/reconstructor.hpp"
+#include "recon/plan.hpp"
+#include "recon/response.hpp"
 
 namespace compueye::recon {
 
-/// The ADMM penalty rho of a plan: plan.rho when given; lambda for tikhonov; otherwise by rule, from A alone.
+/// The ADMM penalty rho of a plan: plan.rho when given; lambda for tikhonov; pdhg has a rule of its own; otherwise by
+/// rule, from A alone.
 ///
 ///   orthonormal bases:  rho = .06 ||A||_F^2 / N,           a share of the mean squared norm of A's columns
 ///   total variation:    rho = .1 ||A||_F ||A D'||_F / N,   D the forward differences of a picture's pixels
@@ -19,12 +21,10 @@ namespace compueye::recon {
 /// rule gives 20: after 60 iterations at sigma .1 the phantom has half the NMSE of rho 20, at sigma .3 three quarters.
 /// The objective alone would rather have 20 at sigma .3 and 4 at sigma .05. On the 8x8 eyes both rules agree.
 ///
-/// pdhg's rho is the inverse of its primal step: .06 ||A||_F^2 / N in every basis where it knows all modes, else .021,
-/// whose longer steps do more for the modes it does not know. On the 80x80 eye that is 7 (x >= 0, eight scenes): at
-/// sigma^2 = .1, 5, 7 and 10 take 42, 30 and 27 iterations to 5 % of the converged NMSE in the DCT, 50, 40 and 36 in
-/// total variation; at 30 dB, 2, 2 and more than 60.
-///
 /// All scale as A^2 does, and not with the unit of x.
 [[nodiscard]] double resolve_rho(const Response& response, const Objective& objective, const Plan& plan);
+
+/// The first of the rules.
+[[nodiscard]] double rho_by_columns(const Response& response);
 
 }  // namespace compueye::recon

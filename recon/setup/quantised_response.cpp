@@ -7,11 +7,9 @@
 #include <utility>
 #include <vector>
 
-namespace compueye::recon {
+#include "recon/setup/operator_list.hpp"
 
-bool is_lossy(OperatorKind kind) noexcept {
-  return kind == OperatorKind::dense_runs_bf16 || kind == OperatorKind::dense_runs_int8;
-}
+namespace compueye::recon {
 
 float int8_scale(double largest) noexcept {
   return largest < least_row_peak ? 0.0F : static_cast<float>(largest / 127.0);

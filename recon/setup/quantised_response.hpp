@@ -2,13 +2,10 @@
 
 #include <cstdint>
 
-#include "recon/core/parts/frame_info.hpp"
+#include "recon/core/operators/linear_operator.hpp"
 #include "recon/response.hpp"
 
 namespace compueye::recon {
-
-/// Whether this form of A keeps fewer digits than the precision of the frame path.
-[[nodiscard]] bool is_lossy(OperatorKind kind) noexcept;
 
 /// The matrix that a lossy operator applies, every entry as it is stored; any other kind: the response itself. Factor,
 /// modes, step sizes, norms and the rules for lambda and rho are to be computed from it: a factor of the unrounded

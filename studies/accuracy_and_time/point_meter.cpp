@@ -1,4 +1,6 @@
 #include "studies/accuracy_and_time/point_meter.hpp"
+#include "recon/setup/operator_list.hpp"
+#include "recon/solver_list.hpp"
 
 #include <fmt/format.h>
 
@@ -34,8 +36,9 @@ hal::Result<CurveEyes> set_up_curve(const Board& board, const LivingResponse& li
                                     const std::vector<NoiseLevel>& levels, const recon::Progress& progress) {
   CurveEyes eyes;
   Board curved = with_curve(board, curve);
-  // tikhonov's factor goes with its lambda: nothing to share, nothing worth keeping.
-  const std::string cache = curve.solver == recon::SolverKind::tikhonov ? std::string() : board.cache();
+  // A factor that goes with its lambda is nothing to share, and not worth keeping.
+  const bool shares = curve.solver->rho != recon::RhoUse::lambda;
+  const std::string cache = shares ? board.cache() : std::string();
   ReconstructorMaker maker(living.response, curve.op, cache, ReconstructorMaker::Memory::remembers);
   for (const NoiseLevel& level : levels) {
     curved.sigma = level.sigma;

@@ -11,7 +11,7 @@
 #include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 #include "recon/worker_threads.hpp"
 #include "studies/named_kinds.hpp"
 
@@ -21,6 +21,7 @@ namespace {
 using recon::BasisKind;
 using recon::OperatorKind;
 using recon::Precision;
+using recon::solver_named;
 using recon::SolverKind;
 
 constexpr int every_eye = std::numeric_limits<int>::max();
@@ -39,7 +40,7 @@ constexpr Steps atoms{some_atoms, atom}, once{one, one};
 
 /// A solver in one form, and the steps in which it is followed.
 struct SweptForm {
-  SolverKind solver = SolverKind::admm;
+  SolverKind solver = recon::default_solver();
   const Steps* steps = &first_order;
   int most_rows = every_eye;  ///< seeing rows up to which it is swept without being asked for by name
   bool boards_basis_only = false;
@@ -49,47 +50,49 @@ struct SweptForm {
   bool all_cores = false;                         ///< a thread a core; left out where there is but one
 };
 
-/// Solvers whose steps are not the usual ones, those that win most often first. All others follow as first-order
-/// methods: a new solver needs no line here.
-const std::vector<SweptForm>& known_solvers() {
-  static const std::vector<SweptForm> known{{SolverKind::admm, &factored},        {SolverKind::pdhg, &factored},
-                                            {SolverKind::tikhonov, &once, large}, {SolverKind::adm, &factored},
-                                            {SolverKind::chambolle_pock},         {SolverKind::fista},
-                                            {SolverKind::omp, &atoms, large},     {SolverKind::tsvd, &once, large}};
-  return known;
+/// The solvers that win most often come first, since time may run out.
+constexpr std::string_view first_solvers[] = {"admm", "pdhg", "tikhonov"};
+
+/// Those that find every direction at once, and those with a factor, take few iterations; all others many.
+SweptForm form_of(SolverKind solver) {
+  if (solver->direct) return {solver, &once, large};
+  if (solver->lambda == recon::LambdaUse::atoms) return {solver, &atoms, large};
+  return {solver, recon::uses_factor(solver) ? &factored : &first_order};
+}
+
+std::vector<SweptForm> swept_solvers() {
+  std::vector<SweptForm> forms;
+  for (const std::string_view name : first_solvers) forms.push_back(form_of(solver_named(name)));
+  for (const SolverKind solver : recon::solvers()) {
+    if (std::find(std::begin(first_solvers), std::end(first_solvers), solver->name) == std::end(first_solvers)) {
+      forms.push_back(form_of(solver));
+    }
+  }
+  return forms;
 }
 
 /// Other forms of A, more threads and double, on the quickest solvers and the board's own basis.
 const std::vector<SweptForm>& other_forms() {
   constexpr bool own_basis = true;
+  const SolverKind admm = solver_named("admm"), pdhg = solver_named("pdhg");
   static const std::vector<SweptForm> forms{
-      {SolverKind::admm, &of_forms, large, own_basis, Precision::f32, OperatorKind::dense},
-      {SolverKind::admm, &of_forms, large, own_basis, Precision::f32, OperatorKind::csr},
-      {SolverKind::pdhg, &of_forms, every_eye, own_basis, Precision::f32, OperatorKind::dense_runs_int8},
-      {SolverKind::pdhg, &of_forms, every_eye, own_basis, Precision::f32, OperatorKind::dense_runs_bf16},
-      {SolverKind::pdhg, &of_forms, every_eye, own_basis, Precision::f32, OperatorKind::dense_runs},
-      {SolverKind::pdhg, &of_forms, every_eye, own_basis, Precision::f32, OperatorKind::csr},
-      {SolverKind::pdhg, &of_forms, every_eye, own_basis, Precision::f32, std::nullopt, Motion::none, true},
-      {SolverKind::admm, &factored, large, own_basis, Precision::f64},
+      {admm, &of_forms, large, own_basis, Precision::f32, OperatorKind::dense},
+      {admm, &of_forms, large, own_basis, Precision::f32, OperatorKind::csr},
+      {pdhg, &of_forms, every_eye, own_basis, Precision::f32, OperatorKind::dense_runs_int8},
+      {pdhg, &of_forms, every_eye, own_basis, Precision::f32, OperatorKind::dense_runs_bf16},
+      {pdhg, &of_forms, every_eye, own_basis, Precision::f32, OperatorKind::dense_runs},
+      {pdhg, &of_forms, every_eye, own_basis, Precision::f32, OperatorKind::csr},
+      {pdhg, &of_forms, every_eye, own_basis, Precision::f32, std::nullopt, Motion::none, true},
+      {admm, &factored, large, own_basis, Precision::f64},
   };
   return forms;
 }
 
-bool goes_on_warm(SolverKind solver) {
-  return solver == SolverKind::pdhg;
-}
-
 std::vector<SweptForm> swept_forms() {
-  std::vector<SweptForm> solvers = known_solvers();
-  for (const auto& named : recon::solver_names()) {
-    const bool known =
-        std::any_of(solvers.begin(), solvers.end(), [&](const SweptForm& form) { return form.solver == named.kind; });
-    if (!known) solvers.push_back({named.kind});
-  }
   std::vector<SweptForm> forms;
-  for (const SweptForm& solver : solvers) {
+  for (const SweptForm& solver : swept_solvers()) {
     forms.push_back(solver);
-    if (!goes_on_warm(solver.solver)) continue;
+    if (!solver.solver->starts_warm()) continue;
     for (const Motion motion : {Motion::still, Motion::sprite}) {
       forms.push_back({solver.solver, &warm, every_eye, true, Precision::f32, std::nullopt, motion});
     }

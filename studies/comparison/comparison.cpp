@@ -12,8 +12,9 @@
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
+#include "recon/setup/operator_list.hpp"
 #include "recon/setup/penalty_rule.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 #include "studies/comparison/samples.hpp"
 #include "studies/named_kinds.hpp"
 
@@ -26,10 +27,6 @@ constexpr int more_without_factor = 10;        // times the board's iterations
 constexpr int most_for_whole_spectrum = 2000;  // rows of a parity class, whose decomposition takes a minute
 constexpr std::size_t most_repeats = 15;
 constexpr double most_timing_ms = 500.0;
-
-bool shares_objective(recon::SolverKind solver) {
-  return solver != recon::SolverKind::omp && solver != recon::SolverKind::tikhonov && solver != recon::SolverKind::tsvd;
-}
 
 int threads_of(const Board& board, const CompareOptions& options) {
   return options.threads ? static_cast<int>(*options.threads) : board.plan.threads;
@@ -75,7 +72,7 @@ class Runner {
     if (options_.iterations) plan.iterations = static_cast<int>(*options_.iterations);
     plan.threads = threads_of(board_, options_);
     // The board's rho was chosen for the board's metric, and is no step of pdhg.
-    const bool penalised = contender.solver == recon::SolverKind::admm || contender.solver == recon::SolverKind::adm;
+    const bool penalised = contender.solver->rho == recon::RhoUse::penalty;
     if (!penalised || recon::metric_of(contender.basis) != recon::metric_of(board_.objective.basis)) plan.rho = 0.0;
     plan.max_reweighted = static_cast<int>(
         std::count_if(samples_.weights.begin(), samples_.weights.end(), [](float w) { return w != 1.0F; }));
@@ -86,7 +83,7 @@ class Runner {
 
   /// By hand, else the board's for the board's own basis, else by rule.
   [[nodiscard]] Result<double> lambda_of(const Contender& contender) const {
-    const bool boards = contender.basis == board_.objective.basis && shares_objective(contender.solver);
+    const bool boards = contender.basis == board_.objective.basis && contender.solver->minimises;
     const std::optional<double> of_board = boards && !options_.sigma ? board_.lambda : std::nullopt;
     return TRY(choose_lambda(maker_.response(), contender.solver, contender.basis,
                              options_.lambda ? options_.lambda : of_board, samples_.sigma))
@@ -124,9 +121,10 @@ class Runner {
   int seeing_;
 };
 
-/// tsvd decomposes A A' whole: for an eye that is large and not symmetric that takes many minutes without a word.
+/// What keeps singular values decomposes A A' whole: for an eye that is large and not symmetric that takes many minutes
+/// without a word.
 bool takes_too_long(const Contender& contender, const CompareOptions& options, const recon::Response& response) {
-  if (contender.solver != recon::SolverKind::tsvd || !options.solvers.empty()) return false;
+  if (contender.solver->rank != recon::RankUse::singular_values || !options.solvers.empty()) return false;
   const auto rows = response.seeing_rows();
   if (static_cast<int>(rows.size()) <= most_for_whole_spectrum) return false;
   const auto images = recon::find_mirror_symmetry(response.select_rows(rows));
@@ -139,10 +137,10 @@ std::string title_of(const Contender& c) {
 
 void fill_excess(std::vector<ComparedRow>& rows) {
   for (ComparedRow& row : rows) {
-    if (!shares_objective(row.contender.solver)) continue;
+    if (!row.contender.solver->minimises) continue;
     double least = std::numeric_limits<double>::infinity();
     for (const ComparedRow& other : rows) {
-      const bool same = shares_objective(other.contender.solver) && other.contender.basis == row.contender.basis &&
+      const bool same = other.contender.solver->minimises && other.contender.basis == row.contender.basis &&
                         other.contender.constraint == row.contender.constraint && other.lambda == row.lambda;
       if (same) least = std::min(least, other.info.objective);
     }

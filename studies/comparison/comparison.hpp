@@ -11,7 +11,7 @@
 #include "firmware/eye/picture_quality.hpp"
 #include "hal/clock.hpp"
 #include "hal/image.hpp"
-#include "recon/core/parts/frame_info.hpp"
+#include "recon/core/frame/frame_info.hpp"
 #include "recon/reconstructor.hpp"
 #include "recon/setup/factor.hpp"
 
@@ -35,7 +35,7 @@ struct CompareOptions {
 
 /// A solver with a basis and constraint it takes.
 struct Contender {
-  recon::SolverKind solver = recon::SolverKind::admm;
+  recon::SolverKind solver = recon::default_solver();
   recon::BasisKind basis = recon::BasisKind::identity;
   recon::ConstraintKind constraint = recon::ConstraintKind::none;
 };

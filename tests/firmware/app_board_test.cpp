@@ -13,6 +13,7 @@
 
 #include "firmware/eye/settings/setting.hpp"
 #include "recon/option_names.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/firmware/app_board_text.hpp"
 #include "tests/hal/error_check.hpp"
 
@@ -81,7 +82,7 @@ TEST_CASE("a good board is read in natural units, with every default") {
   CHECK(board->source.kind == "sim");
   CHECK(board->source.serial == "SIM0001");
   CHECK(board->source.fifo_frames == 4);
-  CHECK(board->plan.solver == recon::SolverKind::admm);
+  CHECK(board->plan.solver == recon::solver_named("admm"));
   CHECK(board->objective.basis == recon::BasisKind::dct);
   CHECK(board->objective.constraint == recon::ConstraintKind::box);
   CHECK(board->objective.lo == 0.0);
@@ -145,7 +146,7 @@ TEST_CASE("every lattice, solver, basis and constraint can be named") {
                                "solver = \"tikhonov\"\nbasis = \"identity\"\nconstraint = \"none\"\nlambda = 0"),
       "board.toml");
   REQUIRE_MESSAGE(linear.has_value(), linear.error().text());
-  CHECK(linear->plan.solver == recon::SolverKind::tikhonov);
+  CHECK(linear->plan.solver == recon::solver_named("tikhonov"));
   CHECK(linear->objective.basis == recon::BasisKind::identity);
   CHECK(linear->objective.constraint == recon::ConstraintKind::none);
   CHECK(linear->lambda == 0.0);

@@ -1,4 +1,5 @@
 #include "tests/golden/cases.hpp"
+#include "recon/solver_list.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -7,7 +8,6 @@
 
 #include "calib/nominal.hpp"
 #include "calib/plausible_response.hpp"
-#include "recon/freeze.hpp"
 #include "recon/lambda_rule.hpp"
 #include "sim/built_in_scenes.hpp"
 #include "sim/random.hpp"
@@ -19,6 +19,7 @@ namespace {
 using recon::BasisKind;
 using recon::ConstraintKind;
 using recon::OperatorKind;
+using recon::solver_named;
 using recon::SolverKind;
 
 constexpr std::uint64_t seed = 1;
@@ -81,9 +82,9 @@ std::vector<Case> golden_cases() {
       small_eye("8x8-sparse-admm", "fig2", BasisKind::identity, OperatorKind::csr),
       small_eye("8x8-sparse-admm-dct", "bars", BasisKind::dct, OperatorKind::csr),
       measured(small_eye("8x8-dense-admm", "fig2", BasisKind::identity, OperatorKind::dense)),
-      large_eye("80x80-admm", "line-art", BasisKind::dct, SolverKind::admm, 60),
-      large_eye("80x80-pdhg", "line-art", BasisKind::dct, SolverKind::pdhg, 25),
-      large_eye("80x80-cp-tv", "phantom", BasisKind::tv, SolverKind::chambolle_pock, 30),
+      large_eye("80x80-admm", "line-art", BasisKind::dct, solver_named("admm"), 60),
+      large_eye("80x80-pdhg", "line-art", BasisKind::dct, solver_named("pdhg"), 25),
+      large_eye("80x80-cp-tv", "phantom", BasisKind::tv, solver_named("cp"), 30),
   };
 }
 
@@ -107,7 +108,7 @@ hal::Result<std::vector<std::byte>> frozen(const Case& golden) {
   const std::vector<float> y = samples(*response, *picture, golden.sigma);
   const tests::SolvedFrame solved = tests::solve_frame(*solver, y, weights);
   const float* w = weights.empty() ? nullptr : weights.data();
-  return recon::freeze({*solver->frame_problem(), y.data(), w, solved.x.data(), solved.info.objective});
+  return solver->freeze({y.data(), w, solved.x.data(), solved.info.objective});
 }
 
 }  // namespace compueye::golden

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "recon/aligned_workspace.hpp"
-#include "recon/core/parts/frame_solver.hpp"
-#include "recon/core/parts/frozen_frame.hpp"
+#include "recon/core/frame/frozen_frame.hpp"
+#include "tests/golden/frozen_solvers.hpp"
 
 using namespace compueye::recon;
 
@@ -41,10 +41,31 @@ const char* why(core::Thawed thawed) {
       return "is no frozen frame";
     case core::Thawed::other_version:
       return "was frozen by another version of this program; freeze it again";
+    case core::Thawed::other_method:
+      return "was frozen for a solver that this program does not have";
     case core::Thawed::damaged:
       return "is damaged or cut short; freeze it again";
   }
   return "";
+}
+
+template <class Problem>
+int solve_again(const char* path, const core::FrozenFrame<Problem>& frame, int times) {
+  const core::Solver<float>& solver = Problem::solver;
+  const std::size_t size = solver.bytes(frame.problem);
+  const AlignedWorkspace workspace(size);
+  std::vector<float> x(frame.problem.pixels());
+  FrameInfo info;
+  for (int k = 0; k < times; ++k) {
+    info = solver.solve(frame.problem, frame.samples.y, frame.samples.weights, workspace.span().data(), x.data());
+  }
+  const std::size_t differing = core::differing_pixels(frame.samples.picture, x.data(), x.size());
+  const bool same = differing == 0 && info.objective == frame.samples.objective;
+  std::printf(
+      "%s: %d iterations, workspace %zu bytes, %zu of %zu pixels differ, objective %.17g, frozen with %.17g: %s\n",
+      path, info.iterations, size, differing, x.size(), info.objective, frame.samples.objective,
+      same ? "the same bits" : "OTHER BITS");
+  return same ? 0 : 1;
 }
 
 int replay(const char* path, int times) {
@@ -54,26 +75,15 @@ int replay(const char* path, int times) {
   const AlignedWorkspace bytes(file_size + 1);
   std::ifstream file(path, std::ios::binary);
   file.read(reinterpret_cast<char*>(bytes.span().data()), static_cast<std::streamsize>(file_size));
-  core::FrozenFrame frame;
-  const core::Thawed thawed = core::thaw(bytes.span().data(), file_size, frame);
-  if (error || !file || thawed != core::Thawed::ready) {
-    std::fprintf(stderr, "%s: %s\n", path, !error && file ? why(thawed) : "cannot be read");
+  if (error || !file) {
+    std::fprintf(stderr, "%s: cannot be read\n", path);
     return 1;
   }
-  const std::size_t size = core::workspace_bytes(frame.problem);
-  const AlignedWorkspace workspace(size);
-  std::vector<float> x(frame.problem.pixels());
-  FrameInfo info;
-  for (int k = 0; k < times; ++k) {
-    info = core::solve_frame(frame.problem, frame.y, frame.weights, workspace.span().data(), x.data());
-  }
-  const std::size_t differing = core::differing_pixels(frame, x.data());
-  const bool same = differing == 0 && info.objective == frame.objective;
-  std::printf(
-      "%s: %d iterations, workspace %zu bytes, %zu of %zu pixels differ, objective %.17g, frozen with %.17g: %s\n",
-      path, info.iterations, size, differing, x.size(), info.objective, frame.objective,
-      same ? "the same bits" : "OTHER BITS");
-  return same ? 0 : 1;
+  int status = 1;
+  const auto again = [&](const auto& frame) { status = solve_again(path, frame, times); };
+  const core::Thawed thawed = compueye::golden::thaw_any(bytes.span().data(), file_size, again);
+  if (thawed != core::Thawed::ready) std::fprintf(stderr, "%s: %s\n", path, why(thawed));
+  return status;
 }
 
 }  // namespace

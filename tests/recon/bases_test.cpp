@@ -6,7 +6,7 @@
 
 #include "recon/core/bases/basis.hpp"
 #include "recon/core/bases/wavelet.hpp"
-#include "recon/core/parts/metric.hpp"
+#include "recon/core/frame/metric.hpp"
 #include "recon/reference/reference_solver.hpp"
 #include "recon/setup/dct_tables.hpp"
 #include "recon/setup/fourier_tables.hpp"
@@ -105,12 +105,12 @@ TEST_CASE("bases pass the dot test and orthonormal ones keep the norm, at full s
 }
 
 TEST_CASE("wavelets go as deep as the picture allows") {
-  CHECK(recon::core::wavelet_levels({BasisKind::haar, 160, 160}) == 5);
-  CHECK(recon::core::wavelet_levels({BasisKind::db4, 160, 160}) == 5);
-  CHECK(recon::core::wavelet_levels({BasisKind::haar, 16, 16}) == 4);
-  CHECK(recon::core::wavelet_levels({BasisKind::db4, 16, 16}) == 2);
-  CHECK(recon::core::wavelet_levels({BasisKind::haar, 15, 16}) == 0);
-  CHECK(recon::core::wavelet_levels({BasisKind::db4, 4, 64}) == 0);
+  CHECK(recon::core::wavelet_levels({recon::core::Wavelet::haar, 160, 160}) == 5);
+  CHECK(recon::core::wavelet_levels({recon::core::Wavelet::db4, 160, 160}) == 5);
+  CHECK(recon::core::wavelet_levels({recon::core::Wavelet::haar, 16, 16}) == 4);
+  CHECK(recon::core::wavelet_levels({recon::core::Wavelet::db4, 16, 16}) == 2);
+  CHECK(recon::core::wavelet_levels({recon::core::Wavelet::haar, 15, 16}) == 0);
+  CHECK(recon::core::wavelet_levels({recon::core::Wavelet::db4, 4, 64}) == 0);
 }
 
 TEST_CASE("the smoothing metric is the inverse of D'D + I") {

@@ -10,7 +10,7 @@
 
 #include "calib/plausible_response.hpp"
 #include "recon/setup/dense_run_tables.hpp"
-#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
 #include "tests/recon/random_problem.hpp"
 
@@ -78,12 +78,11 @@ template <class T>
 void check_against_double(const Measured& measured, OperatorKind kind) {
   Random random(82);
   const Response a = recon::quantised(measured.a, kind);
-  recon::OwnedTables<T> tables;
-  REQUIRE(recon::fill_operator(a, kind, tables).has_value());
-  const auto& op = tables.problem.a;
+  recon::KeptTables kept;
+  const auto op = recon::make_operator<T>(a, kind, kept).value();
   CHECK(op.kind == kind);
   CHECK(op.scratch_size() == 0);
-  CHECK(recon::core::bytes(op) == tables.runs.bytes());
+  CHECK(recon::core::bytes(op) == kept.bytes());
   const auto x = cast<T>(random_vector(random, a.cols())), u = cast<T>(random_vector(random, a.rows()));
   std::vector<T> y(u.size(), T(7)), back(x.size(), T(1));
   recon::core::forward(op, x.data(), y.data(), nullptr);
@@ -119,9 +118,8 @@ void check_against_double(const Measured& measured, OperatorKind kind) {
 }
 
 OperatorKind chosen(const Response& a) {
-  recon::OwnedTables<float> tables;
-  REQUIRE(recon::fill_operator(a, std::nullopt, tables).has_value());
-  return tables.problem.a.kind;
+  recon::KeptTables kept;
+  return recon::make_operator<float>(a, std::nullopt, kept).value().kind;
 }
 
 }  // namespace
@@ -160,10 +158,10 @@ TEST_CASE("a sum of dense runs has the order that is written down, to the bit") 
     expected[m] = lane[0];
   }
   for (const OperatorKind kind : kinds) {
-    recon::OwnedTables<float> tables;
-    REQUIRE(recon::fill_operator(recon::quantised(a, kind), kind, tables).has_value());
+    recon::KeptTables kept;
+    const auto op = recon::make_operator<float>(recon::quantised(a, kind), kind, kept).value();
     float y[5];
-    recon::core::forward(tables.problem.a, x.data(), y, nullptr);
+    recon::core::forward(op, x.data(), y, nullptr);
     for (std::size_t m = 0; m < 5; ++m) CHECK(y[m] == expected[m]);
   }
 }
@@ -227,11 +225,11 @@ TEST_CASE("a pixel that is not finite spoils the rows that see it") {
                          .with_image(8, 8)
                          .value();
   for (const OperatorKind kind : kinds) {
-    recon::OwnedTables<float> tables;
-    REQUIRE(recon::fill_operator(a, kind, tables).has_value());
+    recon::KeptTables kept;
+    const auto op = recon::make_operator<float>(a, kind, kept).value();
     std::vector<float> x(64, 1.0F), y(2);
     x[50] = std::nanf("");
-    recon::core::forward(tables.problem.a, x.data(), y.data(), nullptr);
+    recon::core::forward(op, x.data(), y.data(), nullptr);
     CHECK(std::isnan(y[1]));
   }
 }

@@ -5,7 +5,7 @@
 
 #include "recon/option_names.hpp"
 #include "recon/reconstructor.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 
 namespace compueye::tests {
 
@@ -18,7 +18,7 @@ struct SolverSetting {
 /// Every solver, as published too, with every basis and constraint it takes, in both precisions; with an epsilon
 /// besides where there is such a form. Lambda .1, 5 iterations, at most 6 reweighted channels.
 inline std::vector<SolverSetting> every_setting() {
-  std::vector<recon::SolverKind> solvers{recon::SolverKind::adm_as_published};
+  std::vector<recon::SolverKind> solvers{recon::solver_named("adm as published")};
   for (const auto& solver : recon::solver_names()) solvers.push_back(solver.kind);
   std::vector<SolverSetting> all;
   for (const recon::SolverKind solver : solvers) {
@@ -38,7 +38,7 @@ inline std::vector<SolverSetting> every_setting() {
           setting.plan.max_reweighted = 6;
           setting.plan.measure_gap = true;
           all.push_back(setting);
-          if (solver != recon::SolverKind::adm && solver != recon::SolverKind::omp) continue;
+          if (solver != recon::solver_named("adm") && solver != recon::solver_named("omp")) continue;
           setting.name += " epsilon";
           setting.objective.epsilon = 0.5;
           all.push_back(setting);

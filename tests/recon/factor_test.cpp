@@ -7,9 +7,9 @@
 
 #include "recon/core/parts/cholesky.hpp"
 #include "recon/core/parts/packed_symmetric.hpp"
+#include "recon/setup/inverse_tables.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/parity_classes.hpp"
-#include "recon/setup/problem_tables.hpp"
 #include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/random_problem.hpp"
 
@@ -52,9 +52,8 @@ void check_against_direct(const recon::Response& a, double rho) {
   const Eigen::MatrixXd expected = direct_inverse(a, rho);
   const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a));
   CHECK(packed->size() == recon::factor_size(classes));
-  recon::OwnedTables<double> tables;
-  recon::fill_inverse(classes, *packed, tables);
-  const recon::core::ClassInverse<double>& h = tables.problem.inverse;
+  recon::KeptTables kept;
+  const auto h = recon::make_inverse(classes, packed->data(), kept);
   const auto order = static_cast<std::size_t>(a.rows());
   std::vector<double> scratch(h.scratch_size()), row(order), y(order);
   Random random(45);

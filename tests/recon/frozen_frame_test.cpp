@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
-#include <limits>
 #include <numbers>
 #include <set>
 #include <span>
 #include <vector>
 
 #include "calib/nominal.hpp"
-#include "recon/core/parts/frame_solver.hpp"
-#include "recon/core/parts/frozen_frame.hpp"
-#include "recon/freeze.hpp"
+#include "recon/core/frame/frozen_frame.hpp"
+#include "tests/golden/frozen_solvers.hpp"
 #include "tests/recon/every_setting.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"
@@ -58,8 +56,7 @@ Sample sample_for(const recon::Reconstructor& solver) {
 
 std::vector<std::byte> frozen(const recon::Reconstructor& solver, const Sample& sample) {
   const SolvedFrame solved = solve_frame(solver, sample.y, sample.weights);
-  return recon::freeze(
-      {*solver.frame_problem(), sample.y.data(), sample.weights.data(), solved.x.data(), solved.info.objective});
+  return solver.freeze({sample.y.data(), sample.weights.data(), solved.x.data(), solved.info.objective});
 }
 
 /// The bytes where a program that thaws them would have put them.
@@ -68,10 +65,27 @@ struct Copy {
     std::copy(bytes.begin(), bytes.end(), memory.span().begin());
   }
   recon::core::Thawed thaw() { return recon::core::thaw(memory.span().data(), memory.span().size(), frame); }
+  template <class Use>
+  recon::core::Thawed thaw_any(const Use& use) {
+    return golden::thaw_any(memory.span().data(), memory.span().size(), use);
+  }
 
   recon::AlignedWorkspace memory;
-  recon::core::FrozenFrame frame;
+  recon::core::FrozenFrame<recon::core::AdmmProblem<float>> frame;
 };
+
+template <class Problem>
+void check_same_bits(const recon::core::FrozenFrame<Problem>& frame, const recon::Reconstructor& frozen) {
+  CHECK(Problem::method == frozen.plan().solver->name);
+  CHECK(Problem::solver.bytes(frame.problem) == frozen.required_bytes());
+  const recon::AlignedWorkspace workspace(frozen.required_bytes());
+  std::vector<float> x(frame.problem.pixels());
+  const auto info =
+      Problem::solver.solve(frame.problem, frame.samples.y, frame.samples.weights, workspace.span().data(), x.data());
+  CHECK(recon::core::differing_pixels(frame.samples.picture, x.data(), x.size()) == 0);
+  CHECK(info.objective == frame.samples.objective);
+  CHECK(info.health != recon::Health::invalid);
+}
 
 recon::Reconstructor small_solver() {
   recon::Objective objective;
@@ -97,17 +111,11 @@ TEST_CASE("every setting gives the same bits again from its frozen bytes alone")
       const auto solver = recon::Reconstructor::create(problem.a, setting.objective, setting.plan);
       REQUIRE(solver);
       Copy copy(frozen(*solver, sample_for(*solver)));
-      REQUIRE(copy.thaw() == recon::core::Thawed::ready);
-      const recon::core::FrozenFrame& frame = copy.frame;
-      CHECK(recon::core::workspace_bytes(frame.problem) == solver->required_bytes());
-      const recon::AlignedWorkspace workspace(recon::core::workspace_bytes(frame.problem));
-      std::vector<float> x(frame.problem.pixels());
-      const auto info =
-          recon::core::solve_frame(frame.problem, frame.y, frame.weights, workspace.span().data(), x.data());
-      CHECK(recon::core::differing_pixels(frame, x.data()) == 0);
-      CHECK(info.objective == frame.objective);
-      CHECK(info.health != recon::Health::invalid);
-      kinds.insert(frame.problem.a.kind);
+      const auto thawed = copy.thaw_any([&](const auto& frame) {
+        check_same_bits(frame, *solver);
+        kinds.insert(frame.problem.a.kind);
+      });
+      REQUIRE(thawed == recon::core::Thawed::ready);
       ++solved;
     }
   }
@@ -115,7 +123,7 @@ TEST_CASE("every setting gives the same bits again from its frozen bytes alone")
   CHECK(kinds.size() >= 4);
 }
 
-TEST_CASE("numbers without an end survive freezing") {
+TEST_CASE("a bound that is not there survives freezing") {
   recon::Objective objective;
   objective.constraint = recon::ConstraintKind::nonnegative;
   const SolverProblem problem = problems().front();
@@ -123,7 +131,7 @@ TEST_CASE("numbers without an end survive freezing") {
   Copy copy(frozen(solver, sample_for(solver)));
   REQUIRE(copy.thaw() == recon::core::Thawed::ready);
   CHECK(copy.frame.problem.lo == 0.0F);
-  CHECK(copy.frame.problem.hi == std::numeric_limits<float>::infinity());
+  CHECK(copy.frame.problem.hi == static_cast<float>(recon::core::no_bound));
   CHECK(copy.frame.problem.constrained);
   CHECK(!copy.frame.problem.bounded);
 }
@@ -132,11 +140,12 @@ TEST_CASE("a pixel of other bits is counted, though it may compare equal") {
   const auto solver = small_solver();
   Copy copy(frozen(solver, sample_for(solver)));
   REQUIRE(copy.thaw() == recon::core::Thawed::ready);
-  std::vector<float> x(copy.frame.picture, copy.frame.picture + copy.frame.problem.pixels());
+  const float* picture = copy.frame.samples.picture;
+  std::vector<float> x(picture, picture + copy.frame.problem.pixels());
   x[3] = 2.0F;
-  CHECK(recon::core::differing_pixels(copy.frame, x.data()) == 1);
+  CHECK(recon::core::differing_pixels(picture, x.data(), x.size()) == 1);
   for (float& v : x) v = v == 0.0F ? -0.0F : v;
-  CHECK(recon::core::differing_pixels(copy.frame, x.data()) > 1);
+  CHECK(recon::core::differing_pixels(picture, x.data(), x.size()) > 1);
 }
 
 TEST_CASE("bytes that are no whole frozen frame of this version are refused") {
@@ -151,6 +160,9 @@ TEST_CASE("bytes that are no whole frozen frame of this version are refused") {
   auto newer = whole;
   newer[8] = std::byte{99};
   CHECK(thawed(newer) == recon::core::Thawed::other_version);
+  auto of_another = whole;
+  of_another[24] = std::byte{'p'};
+  CHECK(thawed(of_another) == recon::core::Thawed::other_method);
   auto longer = whole;
   longer.resize(whole.size() + 64);
   CHECK(thawed(longer) == recon::core::Thawed::damaged);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "recon/reconstructor.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;
@@ -35,7 +36,7 @@ recon::Response golden_response(int rows, int cols, std::uint32_t share) {
 }
 
 std::uint64_t golden_frame(recon::BasisKind basis, recon::ConstraintKind constraint, std::uint32_t share, int rows = 12,
-                           int cols = 20, recon::SolverKind kind = recon::SolverKind::admm) {
+                           int cols = 20, recon::SolverKind kind = recon::solver_named("admm")) {
   recon::Objective objective;
   objective.basis = basis;
   objective.constraint = constraint;
@@ -66,6 +67,6 @@ TEST_CASE("golden bits") {
   // Sides whose DCT has rotated levels.
   CHECK(golden_frame(recon::BasisKind::dct, recon::ConstraintKind::box, 60, 24, 40) == 3945252102193618095ULL);
   CHECK(golden_frame(recon::BasisKind::tv, recon::ConstraintKind::nonnegative, 60, 32, 24) == 13415893225100578706ULL);
-  CHECK(golden_frame(recon::BasisKind::dct, recon::ConstraintKind::box, 60, 24, 40, recon::SolverKind::pdhg) ==
+  CHECK(golden_frame(recon::BasisKind::dct, recon::ConstraintKind::box, 60, 24, 40, recon::solver_named("pdhg")) ==
         10398269928453115452ULL);
 }

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "recon/setup/mirror_symmetry.hpp"
-#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
+#include "recon/setup/running_sum_tables.hpp"
 #include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;
@@ -69,9 +70,8 @@ std::uint64_t golden(const recon::core::LinearOperator<float>& op) {
 }
 
 std::uint64_t golden_of(const Response& a, OperatorKind kind) {
-  recon::OwnedTables<float> tables;
-  REQUIRE(recon::fill_operator(recon::quantised(a, kind), kind, tables).has_value());
-  return golden(tables.problem.a);
+  recon::KeptTables kept;
+  return golden(recon::make_operator<float>(recon::quantised(a, kind), kind, kept).value());
 }
 
 std::uint64_t golden_sums(const Response& a, int rows_at_once) {
@@ -79,14 +79,13 @@ std::uint64_t golden_sums(const Response& a, int rows_at_once) {
   REQUIRE(images.order() == 4);
   if (rows_at_once == 1) images = {{images.permutations.front()}, {{1}}};
   const auto transposed = rows_at_once == 8 ? recon::find_diagonal_symmetry(a) : std::vector<std::int32_t>{};
-  recon::OwnedTables<float> tables;
-  tables.sums = recon::running_sum_tables<float>(a, images, transposed).value();
-  CHECK(tables.sums.view.rows_at_once == static_cast<std::size_t>(rows_at_once));
-  auto& op = tables.problem.a;
+  const auto sums = recon::running_sum_tables<float>(a, images, transposed).value();
+  CHECK(sums.view.rows_at_once == static_cast<std::size_t>(rows_at_once));
+  recon::core::LinearOperator<float> op;
   op.kind = OperatorKind::running_sums;
   op.rows = static_cast<std::size_t>(a.rows());
   op.cols = static_cast<std::size_t>(a.cols());
-  op.sums = tables.sums.view;
+  op.sums = sums.view;
   return golden(op);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "recon/reconstructor.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
 
@@ -127,8 +128,8 @@ TEST_CASE("l1 reweighting is for admm in pixels, by a brightness") {
     CHECK(solver.error().code == code);
     CHECK(solver.error().text().find("reweighting") != std::string::npos);
   };
-  refused(BasisKind::dct, SolverKind::admm, e, hal::ErrorCode::usage);
-  refused(BasisKind::identity, SolverKind::fista, e, hal::ErrorCode::usage);
-  refused(BasisKind::identity, SolverKind::admm, -e, hal::ErrorCode::out_of_range);
-  refused(BasisKind::identity, SolverKind::admm, std::nan(""), hal::ErrorCode::out_of_range);
+  refused(BasisKind::dct, solver_named("admm"), e, hal::ErrorCode::usage);
+  refused(BasisKind::identity, solver_named("fista"), e, hal::ErrorCode::usage);
+  refused(BasisKind::identity, solver_named("admm"), -e, hal::ErrorCode::out_of_range);
+  refused(BasisKind::identity, solver_named("admm"), std::nan(""), hal::ErrorCode::out_of_range);
 }

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "recon/solver_list.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
@@ -22,7 +23,7 @@ Response scaled(const Response& a, double factor) {
   return a.select_rows(rows, std::vector<double>(rows.size(), factor));
 }
 
-double rule(const Response& a, BasisKind basis, double sigma, SolverKind solver = SolverKind::admm) {
+double rule(const Response& a, BasisKind basis, double sigma, SolverKind solver = solver_named("admm")) {
   return lambda_by_rule(a, solver, basis, sigma).value();
 }
 
@@ -36,10 +37,10 @@ TEST_CASE("the rule's scales are a median column norm and a mean column sum") {
   }
   CHECK(rule(a, BasisKind::identity, 0.5) == doctest::Approx(1.1 * 0.5 * 2.0));
   CHECK(rule(a, BasisKind::dct, 0.5) == doctest::Approx(0.002 * 0.5 * 10.0 / 3.0));
-  CHECK(rule(a, BasisKind::identity, 0.7, SolverKind::tikhonov) == doctest::Approx(4.0));
-  CHECK(rule(a, BasisKind::identity, 0.7, SolverKind::tsvd) == doctest::Approx(4.0));
-  CHECK(rule(a, BasisKind::identity, 0.5, SolverKind::omp) == rule(a, BasisKind::identity, 0.5));
-  CHECK(rule(a, BasisKind::dct, 0.5, SolverKind::omp) > 10.0 * rule(a, BasisKind::dct, 0.5));
+  CHECK(rule(a, BasisKind::identity, 0.7, solver_named("tikhonov")) == doctest::Approx(4.0));
+  CHECK(rule(a, BasisKind::identity, 0.7, solver_named("tsvd")) == doctest::Approx(4.0));
+  CHECK(rule(a, BasisKind::identity, 0.5, solver_named("omp")) == rule(a, BasisKind::identity, 0.5));
+  CHECK(rule(a, BasisKind::dct, 0.5, solver_named("omp")) > 10.0 * rule(a, BasisKind::dct, 0.5));
 }
 
 TEST_CASE("only the norms of atoms need to know the picture of a response") {
@@ -48,8 +49,8 @@ TEST_CASE("only the norms of atoms need to know the picture of a response") {
   for (const BasisKind basis : {BasisKind::identity, BasisKind::dct, BasisKind::tv}) {
     CHECK(rule(a, basis, 0.5) == rule(known, basis, 0.5));
   }
-  CHECK(lambda_by_rule(a, SolverKind::omp, BasisKind::dct, 0.5).error().code == hal::ErrorCode::mismatch);
-  CHECK(rule(known, BasisKind::dct, 0.5, SolverKind::omp) > 0.0);
+  CHECK(lambda_by_rule(a, solver_named("omp"), BasisKind::dct, 0.5).error().code == hal::ErrorCode::mismatch);
+  CHECK(rule(known, BasisKind::dct, 0.5, solver_named("omp")) > 0.0);
 }
 
 TEST_CASE("lambda follows the unit of the samples as the objective does") {
@@ -68,7 +69,7 @@ TEST_CASE("the rule refuses a sigma that is none, and survives an eye that sees 
   const auto blind = Response::from_csr(2, 3, {0, 0, 0}, {}, {}).value().with_image(1, 3).value();
   CHECK(rule(blind, BasisKind::dct, 0.1) > 0.0);
   for (const double sigma : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
-    const auto lambda = lambda_by_rule(blind, SolverKind::admm, BasisKind::dct, sigma);
+    const auto lambda = lambda_by_rule(blind, solver_named("admm"), BasisKind::dct, sigma);
     REQUIRE_FALSE(lambda.has_value());
     CHECK(lambda.error().code == hal::ErrorCode::out_of_range);
   }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "recon/reference/reference_solver.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
@@ -179,7 +180,7 @@ TEST_CASE("a rho too small for float32 is refused where A A' is singular, and do
   Objective objective;
   objective.lambda = 1e-6;
   Plan tikhonov;
-  tikhonov.solver = recon::SolverKind::tikhonov;
+  tikhonov.solver = recon::solver_named("tikhonov");
   CHECK_FALSE(Reconstructor::create(frame.a, objective, tikhonov).has_value());
 }
 
@@ -207,7 +208,7 @@ TEST_CASE("one pixel and one row have their closed forms") {
   Objective objective;
   objective.lambda = 0.25;
   Plan tikhonov;
-  tikhonov.solver = recon::SolverKind::tikhonov;
+  tikhonov.solver = recon::solver_named("tikhonov");
   const auto solver = Reconstructor::create(row, objective, tikhonov).value();
   const SolvedFrame frame = solve_frame(solver, {13.0F});
   for (std::size_t n = 0; n < 6; ++n) {

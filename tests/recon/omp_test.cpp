@@ -6,6 +6,7 @@
 
 #include "recon/reference/dense_algebra.hpp"
 #include "recon/reference/reference_solver.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"
@@ -13,7 +14,7 @@
 using namespace compueye;
 using namespace compueye::tests;
 using recon::BasisKind;
-using recon::SolverKind;
+using recon::solver_named;
 
 namespace {
 
@@ -57,7 +58,7 @@ std::vector<double> textbook_omp(const SolverProblem& problem, BasisKind basis, 
 
 recon::Plan omp_plan(int elements, int channels) {
   recon::Plan plan;
-  plan.solver = SolverKind::omp;
+  plan.solver = solver_named("omp");
   plan.iterations = elements;
   plan.max_reweighted = channels;
   return plan;

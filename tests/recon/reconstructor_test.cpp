@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "recon/solver_list.hpp"
 #include "tests/recon/every_setting.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
@@ -58,7 +59,7 @@ TEST_CASE("set-up refuses what makes no sense, and says what it expected") {
   box.lo = 1.0;
   CHECK(code(box, {}) == ErrorCode::out_of_range);
   recon::Plan tikhonov;
-  tikhonov.solver = recon::SolverKind::tikhonov;
+  tikhonov.solver = recon::solver_named("tikhonov");
   CHECK(code(dct_box(0.1), tikhonov) == ErrorCode::usage);
   const auto blind = recon::Response::from_dense(3, 4, std::vector<double>(12, 0.0)).value().with_image(2, 2).value();
   CHECK(Reconstructor::create(blind, {}, {}).error().sentence.find("sees nothing") != std::string::npos);
@@ -149,8 +150,8 @@ TEST_CASE("the gap is measured when asked for, and costs its memory only then") 
   for (SolverSetting setting : every_setting()) {
     CAPTURE(setting.name);
     const auto kind = setting.plan.solver;
-    const bool has_gap = kind != recon::SolverKind::tikhonov && kind != recon::SolverKind::tsvd &&
-                         kind != recon::SolverKind::omp &&
+    const bool has_gap = kind != recon::solver_named("tikhonov") && kind != recon::solver_named("tsvd") &&
+                         kind != recon::solver_named("omp") &&
                          !(setting.objective.epsilon && setting.objective.constraint == recon::ConstraintKind::box);
     const auto with = Reconstructor::create(a, setting.objective, setting.plan).value();
     setting.plan.measure_gap = false;
@@ -159,7 +160,7 @@ TEST_CASE("the gap is measured when asked for, and costs its memory only then") 
     CHECK((measured.info.duality_gap >= 0.0) == has_gap);
     CHECK(plain.info.duality_gap == -1.0);
     CHECK(measured.x == plain.x);
-    const bool by_gap = kind == recon::SolverKind::fista || kind == recon::SolverKind::chambolle_pock;
+    const bool by_gap = kind == recon::solver_named("fista") || kind == recon::solver_named("cp");
     CHECK((with.required_bytes() > without.required_bytes()) == (has_gap && !by_gap));  // those need it themselves
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "recon/reference/reference_solver.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/recon/every_setting.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/relative_difference.hpp"
@@ -125,7 +126,8 @@ TEST_CASE("bad samples, bad weights and too many of them make a frame invalid, n
     }
     std::vector<float> three = ones;
     three[1] = three[2] = three[3] = 0.0F;
-    const bool by_factor = recon::uses_factor(setting.plan.solver) || setting.plan.solver == recon::SolverKind::tsvd;
+    const bool by_factor =
+        recon::uses_factor(setting.plan.solver) || setting.plan.solver == recon::solver_named("tsvd");
     if (by_factor) check_invalid(c.y, three);
     CHECK((solve_frame(solver, c.y, three).info.health == recon::Health::invalid) == by_factor);
     const SolvedFrame bright = solve_frame(solver, std::vector<float>(40, 3e38F), ones);

@@ -9,7 +9,7 @@
 
 #include "calib/nominal.hpp"
 #include "calib/plausible_response.hpp"
-#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/operator_list.hpp"
 #include "recon/setup/running_sum_tables.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
@@ -176,9 +176,8 @@ TEST_CASE("diagonal symmetry is its own inverse and asks for a square picture an
 
 TEST_CASE("an eye's operator is running sums, a matrix without runs is not") {
   const auto kind_of = [](const Response& a) {
-    recon::OwnedTables<float> tables;
-    REQUIRE(recon::fill_operator(a, std::nullopt, tables).has_value());
-    return tables.problem.a.kind;
+    recon::KeptTables kept;
+    return recon::make_operator<float>(a, std::nullopt, kept).value().kind;
   };
   Random random(63);
   const auto nominal = [&](int side, double dphi, const hal::ObjectPlane& plane) {

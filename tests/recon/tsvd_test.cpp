@@ -5,6 +5,7 @@
 
 #include "recon/reference/dense_algebra.hpp"
 #include "recon/setup/singular_modes.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
@@ -12,7 +13,7 @@
 
 using namespace compueye;
 using namespace compueye::tests;
-using recon::SolverKind;
+using recon::solver_named;
 
 namespace {
 
@@ -38,7 +39,7 @@ recon::Response symmetric_response(int side) {
 SolvedFrame solve_tsvd(const recon::Response& a, int rank, const std::vector<double>& y,
                        const std::vector<float>& weights = {}) {
   recon::Plan plan;
-  plan.solver = SolverKind::tsvd;
+  plan.solver = solver_named("tsvd");
   plan.rank = rank;
   plan.precision = recon::Precision::f64;
   plan.max_reweighted = a.rows();
@@ -131,6 +132,6 @@ TEST_CASE("the rank follows lambda where none is given, and impossible ones are 
   REQUIRE_FALSE(stopped.has_value());
   CHECK(stopped.error().code == hal::ErrorCode::interrupted);
   recon::Plan plan;
-  plan.solver = SolverKind::tsvd;
+  plan.solver = solver_named("tsvd");
   CHECK(recon::Reconstructor::create(a, {}, plan).error().code == hal::ErrorCode::usage);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "recon/solver_list.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
 
@@ -40,7 +41,7 @@ recon::Reconstructor make(const recon::Response& a, int iterations, bool warm,
   objective.constraint = recon::ConstraintKind::box;
   objective.lambda = 0.02;
   recon::Plan plan;
-  plan.solver = recon::SolverKind::pdhg;
+  plan.solver = recon::solver_named("pdhg");
   plan.iterations = iterations;
   plan.precision = precision;
   plan.warm_start = warm;

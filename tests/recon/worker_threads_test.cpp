@@ -13,9 +13,10 @@
 #include "calib/nominal.hpp"
 #include "calib/plausible_response.hpp"
 #include "recon/option_names.hpp"
-#include "recon/setup/problem_tables.hpp"
+#include "recon/setup/basis_list.hpp"
+#include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/memory/allocation_counter.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
@@ -68,20 +69,18 @@ struct Applied {
 
 /// A, A', Psi and Psi' with these workers.
 template <class T>
-Applied<T> applied_by(recon::OwnedTables<T>& tables, const recon::core::Crew& crew) {
+Applied<T> applied_by(recon::core::LinearOperator<T> a, recon::core::Basis<T> psi, const recon::core::Crew& crew) {
   Random random(101);
-  auto& problem = tables.problem;
-  problem.employ(crew);
-  const auto& psi = problem.psi;
-  const recon::AlignedWorkspace memory((problem.a.scratch_size() + psi.scratch_size()) * sizeof(T) + 64);
+  a.crew = psi.dct.crew = crew;
+  const recon::AlignedWorkspace memory((a.scratch_size() + psi.scratch_size()) * sizeof(T) + 64);
   auto* scratch = reinterpret_cast<T*>(memory.span().data());
-  const auto x = cast<T>(random_vector(random, static_cast<int>(problem.a.cols)));
-  const auto y = cast<T>(random_vector(random, static_cast<int>(problem.a.rows)));
+  const auto x = cast<T>(random_vector(random, static_cast<int>(a.cols)));
+  const auto y = cast<T>(random_vector(random, static_cast<int>(a.rows)));
   const auto c = cast<T>(random_vector(random, static_cast<int>(psi.coefficients())));
   Applied<T> out{std::vector<T>(y.size()), std::vector<T>(x.size(), T(1)), std::vector<T>(c.size()),
                  std::vector<T>(x.size())};
-  recon::core::forward(problem.a, x.data(), out.forward.data(), scratch);
-  recon::core::adjoint_accumulate(problem.a, y.data(), out.adjoint.data(), scratch);
+  recon::core::forward(a, x.data(), out.forward.data(), scratch);
+  recon::core::adjoint_accumulate(a, y.data(), out.adjoint.data(), scratch);
   recon::core::analyse(psi, x.data(), out.analysed.data(), scratch);
   recon::core::synthesise(psi, c.data(), out.synthesised.data(), scratch);
   return out;
@@ -89,15 +88,15 @@ Applied<T> applied_by(recon::OwnedTables<T>& tables, const recon::core::Crew& cr
 
 template <class T>
 void check_operator(const Response& a, int rows, OperatorKind asked, OperatorKind kind, BasisKind basis) {
-  recon::OwnedTables<T> tables;
-  REQUIRE(recon::fill_operator(recon::quantised(a, asked), asked, tables).has_value());
-  CHECK(tables.problem.a.kind == kind);
-  recon::fill_basis(basis, rows, side, tables);
-  const Applied<T> alone = applied_by(tables, {});
+  recon::KeptTables kept;
+  const auto op = recon::make_operator<T>(recon::quantised(a, asked), asked, kept).value();
+  CHECK(op.kind == kind);
+  const auto psi = recon::make_basis<T>(basis, rows, side, kept);
+  const Applied<T> alone = applied_by(op, psi, {});
   for (const int threads : thread_counts) {
     CAPTURE(threads);
     const auto workers = recon::WorkerThreads::start(threads).value();
-    const Applied<T> shared = applied_by(tables, workers->crew());
+    const Applied<T> shared = applied_by(op, psi, workers->crew());
     CHECK(same_bits(shared.forward, alone.forward));
     CHECK(same_bits(shared.adjoint, alone.adjoint));
     CHECK(same_bits(shared.analysed, alone.analysed));
@@ -182,9 +181,9 @@ TEST_CASE("a symmetric eye's inverse by classes and reweighting have the same bi
     objective.basis = basis;
     check_solver(nominal(12), objective, plan);
   }
-  plan.solver = recon::SolverKind::pdhg;
+  plan.solver = recon::solver_named("pdhg");
   check_solver(nominal(12), objective, plan);
-  plan.solver = recon::SolverKind::admm;
+  plan.solver = recon::solver_named("admm");
   objective.basis = BasisKind::identity;
   plan.l1_reweighting = 0.1;
   check_solver(nominal(12), objective, plan);

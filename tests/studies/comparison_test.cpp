@@ -9,7 +9,7 @@
 #include "calib/nominal.hpp"
 #include "firmware/files/response_file.hpp"
 #include "recon/option_names.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 #include "studies/comparison/comparison_files.hpp"
 #include "tests/studies/boards.hpp"
 

@@ -1,4 +1,5 @@
 #include "studies/accuracy_and_time/point_meter.hpp"
+#include "recon/solver_list.hpp"
 
 #include <doctest/doctest.h>
 
@@ -28,7 +29,8 @@ Judged judged(Motion motion, int iterations) {
   auto frames = take_frames(board, *scenes, living->sees, levels.front(), motion);
   REQUIRE(frames.has_value());
   const std::vector<std::vector<FrameSequence>> by_level{std::move(*frames)};
-  Curve curve{recon::SolverKind::pdhg, recon::BasisKind::identity, recon::ConstraintKind::box, recon::Precision::f32};
+  Curve curve{recon::solver_named("pdhg"), recon::BasisKind::identity, recon::ConstraintKind::box,
+              recon::Precision::f32};
   curve.motion = motion;
   const test::TemporaryFolder folder;  // for the factor
   board.folder = folder.path();

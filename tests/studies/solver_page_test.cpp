@@ -4,7 +4,7 @@
 #include <string>
 
 #include "recon/option_names.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;

@@ -6,13 +6,14 @@
 
 #include "firmware/operating_points/machine.hpp"
 #include "recon/option_names.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/studies/boards.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
 using recon::BasisKind;
 using recon::Precision;
+using recon::solver_named;
 using recon::SolverKind;
 
 namespace {
@@ -52,7 +53,7 @@ TEST_CASE("only what goes together is swept, with the board's constraint where i
 }
 
 TEST_CASE("the board's own point comes first and is among those of its curve, quick or not") {
-  for (const SolverKind solver : {SolverKind::admm, SolverKind::pdhg}) {
+  for (const SolverKind solver : {solver_named("admm"), solver_named("pdhg")}) {
     for (const bool quick : {false, true}) {
       SweepOptions options;
       options.quick = quick;
@@ -90,16 +91,16 @@ TEST_CASE("what takes minutes on a large eye is left out with a note, unless it 
       return p.curve.solver == solver && p.curve.precision == precision;
     });
   };
-  CHECK(has(plan_of({}), SolverKind::tsvd, Precision::f32));
-  CHECK(has(plan_of({}), SolverKind::admm, Precision::f64));
+  CHECK(has(plan_of({}), solver_named("tsvd"), Precision::f32));
+  CHECK(has(plan_of({}), solver_named("admm"), Precision::f64));
   const SweepPlan large = plan_of({}, 5000);
-  CHECK_FALSE(has(large, SolverKind::tsvd, Precision::f32));
-  CHECK_FALSE(has(large, SolverKind::admm, Precision::f64));
-  CHECK(has(large, SolverKind::admm, Precision::f32));
+  CHECK_FALSE(has(large, solver_named("tsvd"), Precision::f32));
+  CHECK_FALSE(has(large, solver_named("admm"), Precision::f64));
+  CHECK(has(large, solver_named("admm"), Precision::f32));
   CHECK(large.notes.size() == 6);
   SweepOptions options;
   options.solvers = {"tsvd"};
-  CHECK(has(plan_of(options, 5000), SolverKind::tsvd, Precision::f32));
+  CHECK(has(plan_of(options, 5000), solver_named("tsvd"), Precision::f32));
 }
 
 TEST_CASE("what can go on from the last frame does so with and without motion, everything else starts cold") {
@@ -107,7 +108,7 @@ TEST_CASE("what can go on from the last frame does so with and without motion, e
   for (const PlannedCurve& planned : plan_of({}).curves) {
     const Board board = with_curve(some_board(), planned.curve);
     CHECK(board.plan.warm_start == (planned.curve.motion != Motion::none));
-    CHECK((planned.curve.motion == Motion::none || planned.curve.solver == SolverKind::pdhg));
+    CHECK((planned.curve.motion == Motion::none || planned.curve.solver == solver_named("pdhg")));
     if (planned.curve.motion != Motion::none) ++warm;
   }
   CHECK(warm == 2);

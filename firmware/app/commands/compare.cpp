@@ -20,6 +20,7 @@
 #include "firmware/text/table.hpp"
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
+#include "recon/solver_list.hpp"
 #include "recon/worker_threads.hpp"
 #include "studies/comparison/comparison.hpp"
 #include "studies/comparison/comparison_files.hpp"
@@ -64,7 +65,7 @@ std::string excess_text(const ComparedRow& row) {
 
 /// lambda, or the rank that tsvd made of it.
 std::string penalty_text(const ComparedRow& row) {
-  if (row.contender.solver == recon::SolverKind::tsvd) return "rank " + grouped(row.rank);
+  if (row.contender.solver->rank == recon::RankUse::singular_values) return "rank " + grouped(row.rank);
   return significant(row.lambda, 3);
 }
 

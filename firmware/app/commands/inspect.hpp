@@ -6,7 +6,7 @@
 #include "firmware/app/report.hpp"
 #include "firmware/eye/board.hpp"
 #include "hal/result.hpp"
-#include "recon/core/parts/frame_info.hpp"
+#include "recon/core/frame/frame_info.hpp"
 #include "recon/response.hpp"
 #include "recon/setup/factor.hpp"
 

@@ -20,7 +20,7 @@
 #include "recon/option_names.hpp"
 #include "recon/reconstructor.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
-#include "recon/setup/operator_figures.hpp"
+#include "recon/setup/operator_list.hpp"
 #include "recon/setup/parity_classes.hpp"
 #include "recon/setup/penalty_rule.hpp"
 

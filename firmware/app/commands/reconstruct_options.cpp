@@ -13,7 +13,7 @@
 
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
@@ -293,7 +293,7 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
   }
   problem.objective.epsilon = o.epsilon;
   problem.plan.solver = kind_named(recon::solver_names(), o.solver);
-  if (o.as_published) problem.plan.solver = recon::SolverKind::adm_as_published;
+  if (o.as_published) problem.plan.solver = recon::solver_named("adm as published");
   problem.plan.warm_start = o.start == "warm";
   if (o.op != "auto") problem.plan.op = kind_named(recon::operator_names(), o.op);
   problem.plan.threads = o.threads;

@@ -11,6 +11,7 @@
 
 #include "firmware/text/number_text.hpp"
 #include "recon/option_names.hpp"
+#include "recon/solver_list.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -82,12 +83,12 @@ std::string lambda_origin(const ReconstructReport& r) {
 /// What says how far a solver may stay from y, and its value.
 std::string distance_name(const ReconstructReport& r) {
   if (r.options.epsilon) return "epsilon";
-  return r.point.solver == recon::SolverKind::tsvd ? "rank" : "lambda";
+  return r.point.solver->rank == recon::RankUse::singular_values ? "rank" : "lambda";
 }
 
 std::string distance_text(const ReconstructReport& r) {
   if (r.options.epsilon) return significant(*r.options.epsilon, 4);
-  if (r.point.solver == recon::SolverKind::tsvd) {
+  if (r.point.solver->rank == recon::RankUse::singular_values) {
     return grouped(r.plan.rank) + (r.options.rank ? " by hand" : " singular values: s^2 >= " + lambda_text(r));
   }
   return lambda_text(r);

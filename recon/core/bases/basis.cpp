@@ -19,8 +19,9 @@ void analyse_of(const Basis<T>& psi, const T* x, T* c, T* scratch) noexcept {
     case BasisKind::dct:
       return dct_forward(psi.dct, x, c, scratch);
     case BasisKind::haar:
+      return wavelet_forward({Wavelet::haar, psi.rows, psi.cols}, x, c, scratch);
     case BasisKind::db4:
-      return wavelet_forward({psi.kind, psi.rows, psi.cols}, x, c, scratch);
+      return wavelet_forward({Wavelet::db4, psi.rows, psi.cols}, x, c, scratch);
     case BasisKind::dft:
       return fourier_forward(psi.fourier, x, c, scratch);
     case BasisKind::tv:
@@ -36,8 +37,9 @@ void synthesise_of(const Basis<T>& psi, const T* c, T* x, T* scratch) noexcept {
     case BasisKind::dct:
       return dct_inverse(psi.dct, c, x, scratch);
     case BasisKind::haar:
+      return wavelet_inverse({Wavelet::haar, psi.rows, psi.cols}, c, x, scratch);
     case BasisKind::db4:
-      return wavelet_inverse({psi.kind, psi.rows, psi.cols}, c, x, scratch);
+      return wavelet_inverse({Wavelet::db4, psi.rows, psi.cols}, c, x, scratch);
     case BasisKind::dft:
       return fourier_inverse(psi.fourier, c, x, scratch);
     case BasisKind::tv:

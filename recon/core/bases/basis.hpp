@@ -1,10 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "recon/core/bases/dct.hpp"
 #include "recon/core/bases/fourier.hpp"
-#include "recon/core/parts/frame_info.hpp"
+
+namespace compueye::recon {
+
+enum class BasisKind : std::uint8_t { identity, dct, haar, db4, dft, tv };
+
+}  // namespace compueye::recon
 
 namespace compueye::recon::core {
 
@@ -25,6 +31,19 @@ struct Basis {
   [[nodiscard]] double squared_norm() const noexcept { return kind == BasisKind::tv ? 8.0 : 1.0; }
   /// Elements of T that analyse() and synthesise() want as scratch.
   [[nodiscard]] std::size_t scratch_size() const noexcept;
+
+  /// Its numbers and tables, see core/frame/frozen_layout.hpp.
+  template <class Archive>
+  void fields(Archive& archive) {
+    archive.kind(kind);
+    archive.number(rows);
+    archive.number(cols);
+    describe(dct, archive);
+    archive.number(fourier.rows);
+    archive.number(fourier.cols);
+    archive.table(fourier.row_table, fourier.rows * fourier.rows);
+    archive.table(fourier.col_table, fourier.cols * fourier.cols);
+  }
 };
 
 /// c = Psi x. x and c may not overlap.

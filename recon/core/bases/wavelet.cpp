@@ -21,8 +21,8 @@ constexpr Filter daubechies4{8,
                              {0.23037781330885523, 0.71484657055254153, 0.63088076792959036, -0.027983769416983849,
                               -0.18703481171888114, 0.030841381835986965, 0.032883011666982945, -0.010597401784997278}};
 
-constexpr const Filter& filter_of(BasisKind kind) noexcept {
-  return kind == BasisKind::haar ? haar : daubechies4;
+constexpr const Filter& filter_of(Wavelet kind) noexcept {
+  return kind == Wavelet::haar ? haar : daubechies4;
 }
 
 /// One level down a strip of even length n: averages to the first half, details to the second.

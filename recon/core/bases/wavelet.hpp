@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstddef>
-
-#include "recon/core/parts/frame_info.hpp"
+#include <cstdint>
 
 namespace compueye::recon::core {
+
+enum class Wavelet : std::uint8_t { haar, db4 };
 
 /// Orthonormal 2-D wavelet transforms of a rows x cols picture, periodic at its borders, in the nested layout of Mallat
 /// (1989): after each level the averages fill the upper left quarter, which the next level takes apart.
@@ -13,7 +14,7 @@ namespace compueye::recon::core {
 /// PyWavelets). A level is taken while both sides are even and no shorter than the filter; 160 x 160 gives five levels
 /// of haar and five of db4. A picture with an odd side has none, and its transform is the picture.
 struct WaveletShape {
-  BasisKind kind = BasisKind::haar;  ///< haar or db4
+  Wavelet kind = Wavelet::haar;
   std::size_t rows = 0;
   std::size_t cols = 0;
 };

@@ -6,7 +6,21 @@
 #include "recon/core/operators/dense_runs.hpp"
 #include "recon/core/operators/running_sums.hpp"
 #include "recon/core/parts/crew.hpp"
-#include "recon/core/parts/frame_info.hpp"
+
+namespace compueye::recon {
+
+enum class OperatorKind : std::uint8_t {
+  dense,
+  csr,
+  running_sums,
+  running_sums_symmetric,
+  running_sums_diagonal,
+  dense_runs,
+  dense_runs_bf16,
+  dense_runs_int8
+};
+
+}  // namespace compueye::recon
 
 namespace compueye::recon::core {
 

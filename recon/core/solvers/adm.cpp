@@ -1,13 +1,13 @@
 #include "recon/core/solvers/adm.hpp"
 
-#include "recon/core/parts/duality_gap.hpp"
-#include "recon/core/parts/frame_outcome.hpp"
+#include "recon/core/frame/duality_gap.hpp"
+#include "recon/core/frame/frame_loop.hpp"
+#include "recon/core/frame/residual_copy.hpp"
+#include "recon/core/frame/split_residuals.hpp"
+#include "recon/core/frame/weighted_step.hpp"
 #include "recon/core/parts/proximal.hpp"
-#include "recon/core/parts/residual_copy.hpp"
-#include "recon/core/parts/split_residuals.hpp"
 #include "recon/core/parts/square_root.hpp"
 #include "recon/core/parts/vector_sums.hpp"
-#include "recon/core/parts/weighted_step.hpp"
 
 namespace compueye::recon::core {
 namespace {
@@ -22,7 +22,7 @@ constexpr double most_threshold = 10.0;
 template <class T>
 class Adm {
  public:
-  Adm(const FrameProblem<T>& problem, Workspace& memory) noexcept
+  Adm(const AdmProblem<T>& problem, Workspace& memory) noexcept
       : problem_(problem),
         n_(problem.pixels()),
         step_(problem, memory),
@@ -34,26 +34,49 @@ class Adm {
         before_(memory.take<T>(n_)),
         coefficients_(memory.take<T>(n_)),
         scratch_(memory.take<T>(problem.psi.scratch_size())),
-        gap_(problem, problem.measure_gap, memory) {
-    constexpr T unbounded = T(1e30);
-    lo_ = problem.constrained && problem.lo > -unbounded ? problem.lo : -unbounded;
-    hi_ = problem.constrained && problem.hi < unbounded ? problem.hi : unbounded;
-  }
+        gap_(problem, problem.measure_gap, memory) {}
 
-  FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
-    FrameInfo info = begin_outcome(problem_);
-    if (!step_.begin(y, weights)) {
-      deliver(x_, false, n_, info, x);
-      return info;
-    }
+  bool begin(const float* y, const float* weights) noexcept {
+    if (!step_.begin(y, weights)) return false;
     for (std::size_t k = 0; k < n_; ++k) x_[k] = pull_[k] = sparse_[k] = T(0);
     choose_threshold();
-    for (int k = 0; k < problem_.point.iterations; ++k) iterate();
-    const bool finite = all_finite(x_, n_);  // a clip would turn NaN into a number
-    finish(info);
-    deliver(sparse_, finite, n_, info, x);
-    return info;
+    return true;
   }
+
+  /// pull is A'u over the penalty, sparse the proximal point of x + pull; what the step makes of sparse - pull is the
+  /// next multiplier at a step of one.
+  void iterate(int) noexcept {
+    for (std::size_t k = 0; k < n_; ++k) before_[k] = sparse_[k];
+    for (std::size_t k = 0; k < n_; ++k) point_[k] = x_[k] + pull_[k];
+    shrink(point_);
+    subtract(sparse_, pull_, point_, n_);
+    step_.apply(point_, apart_ ? residual_.shift() : nullptr);
+    const T step = static_cast<T>(multiplier_step);
+    if (apart_) residual_.update(step_.correction(), step);
+    for (std::size_t k = 0; k < n_; ++k) {
+      pull_[k] += point_[k] - sparse_[k];
+      x_[k] += step * (point_[k] - x_[k]);
+    }
+    flush_tiny(pull_, n_);
+    flush_tiny(x_, n_);
+  }
+
+  bool finish(FrameInfo& info) noexcept {
+    analyse(problem_.psi, sparse_, coefficients_, scratch_);
+    const double magnitudes = static_cast<double>(sum_of_magnitudes(coefficients_, n_));
+    const double penalty = problem_.bounded ? magnitudes : static_cast<double>(problem_.lambda) * magnitudes;
+    evaluate(step_.samples(), sparse_, penalty, step_.row_scratch(), info);
+    if (problem_.bounded) info.objective = penalty;
+    info.duality_gap = gap_.measure(step_.samples(), sparse_, nullptr, info.objective);
+    SplitResiduals residuals;
+    residuals.add(point_, sparse_, before_, pull_, n_);
+    residuals.judge(problem_.point.iterations, info);
+    const double most = static_cast<double>(problem_.epsilon) * (1.0 + bound_tolerance);
+    if (problem_.bounded && !(info.residual <= most)) info.health = Health::budget_used;
+    return all_finite(x_, n_);  // a clip would have turned NaN into a number
+  }
+
+  [[nodiscard]] const T* picture() const noexcept { return sparse_; }
 
  private:
   /// Mean brightness of the picture, by what the channels read and what they would read from white.
@@ -91,49 +114,17 @@ class Adm {
     if (apart_) residual_.begin(step_.samples(), lambda > 0.0 ? static_cast<T>(wanted * rho / lambda) : T(1));
   }
 
-  /// pull is A'u over the penalty, sparse the proximal point of x + pull; what the step makes of sparse - pull is the
-  /// next multiplier at a step of one.
-  void iterate() noexcept {
-    for (std::size_t k = 0; k < n_; ++k) before_[k] = sparse_[k];
-    for (std::size_t k = 0; k < n_; ++k) point_[k] = x_[k] + pull_[k];
-    shrink(point_);
-    subtract(sparse_, pull_, point_, n_);
-    step_.apply(point_, apart_ ? residual_.shift() : nullptr);
-    const T step = static_cast<T>(multiplier_step);
-    if (apart_) residual_.update(step_.correction(), step);
-    for (std::size_t k = 0; k < n_; ++k) {
-      pull_[k] += point_[k] - sparse_[k];
-      x_[k] += step * (point_[k] - x_[k]);
-    }
-    flush_tiny(pull_, n_);
-    flush_tiny(x_, n_);
-  }
-
   void shrink(const T* from) noexcept {
     const bool pixels = problem_.psi.kind == BasisKind::identity;
     if (!pixels) analyse(problem_.psi, from, coefficients_, scratch_);
     const T* in = pixels ? from : coefficients_;
     T* out = pixels ? sparse_ : coefficients_;
-    for (std::size_t k = 0; k < n_; ++k) out[k] = prox_l1_box(in[k], threshold_, lo_, hi_);
+    for (std::size_t k = 0; k < n_; ++k) out[k] = prox_l1_box(in[k], threshold_, problem_.lo, problem_.hi);
     flush_tiny(out, n_);
     if (!pixels) synthesise(problem_.psi, coefficients_, sparse_, scratch_);
   }
 
-  void finish(FrameInfo& info) noexcept {
-    analyse(problem_.psi, sparse_, coefficients_, scratch_);
-    const double magnitudes = static_cast<double>(sum_of_magnitudes(coefficients_, n_));
-    const double penalty = problem_.bounded ? magnitudes : static_cast<double>(problem_.lambda) * magnitudes;
-    evaluate(step_.samples(), sparse_, penalty, step_.row_scratch(), info);
-    if (problem_.bounded) info.objective = penalty;
-    info.duality_gap = gap_.measure(step_.samples(), sparse_, nullptr, info.objective);
-    SplitResiduals residuals;
-    residuals.add(point_, sparse_, before_, pull_, n_);
-    residuals.judge(problem_.point.iterations, info);
-    const double most = static_cast<double>(problem_.epsilon) * (1.0 + bound_tolerance);
-    if (problem_.bounded && !(info.residual <= most)) info.health = Health::budget_used;
-  }
-
-  const FrameProblem<T>& problem_;
+  const AdmProblem<T>& problem_;
   std::size_t n_;
   WeightedStep<T> step_;
   ResidualCopy<T> residual_;
@@ -147,29 +138,13 @@ class Adm {
   DualityGap<T> gap_;
   bool apart_ = false;  // the residual is a variable of its own
   T threshold_ = T(0);
-  T lo_ = T(0);
-  T hi_ = T(0);
 };
 
 }  // namespace
 
 template <class T>
-FrameInfo solve_adm(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                    float* x) noexcept {
-  Workspace memory(workspace);
-  return Adm<T>(problem, memory).solve(y, weights, x);
-}
-
-template <class T>
-std::size_t adm_bytes(const FrameProblem<T>& problem) noexcept {
-  Workspace counter;
-  const Adm<T> adm(problem, counter);
-  return counter.used();
-}
-
-template FrameInfo solve_adm(const FrameProblem<float>&, const float*, const float*, std::byte*, float*) noexcept;
-template FrameInfo solve_adm(const FrameProblem<double>&, const float*, const float*, std::byte*, float*) noexcept;
-template std::size_t adm_bytes(const FrameProblem<float>&) noexcept;
-template std::size_t adm_bytes(const FrameProblem<double>&) noexcept;
+const Solver<T> AdmProblem<T>::solver = solver_of<T, AdmProblem, Adm>;
+template struct AdmProblem<float>;
+template struct AdmProblem<double>;
 
 }  // namespace compueye::recon::core

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstddef>
+#include <string_view>
 
-#include "recon/core/parts/frame_info.hpp"
-#include "recon/core/parts/frame_problem.hpp"
+#include "recon/core/frame/frame_problem.hpp"
+#include "recon/core/frame/solver.hpp"
 
 namespace compueye::recon::core {
 
@@ -21,11 +21,22 @@ namespace compueye::recon::core {
 /// Takes pixels with any constraint, or an orthonormal basis with none. Exactly problem.point.iterations iterations;
 /// converged when x, its sparse copy (which is returned) and their change agree to 1e-3, and the bound holds to 1e-3.
 template <class T>
-FrameInfo solve_adm(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                    float* x) noexcept;
+struct AdmProblem : FactoredProblem<T> {
+  static constexpr std::string_view method = "adm";
+  static const Solver<T> solver;
 
-/// Bytes of workspace that solve_adm() uses, exactly.
-template <class T>
-[[nodiscard]] std::size_t adm_bytes(const FrameProblem<T>& problem) noexcept;
+  T mean_row_sum = T(1);  ///< of the magnitudes of A's entries
+  T column_norm = T(1);   ///< root mean square norm of A's columns
+
+  template <class Archive>
+  void fields(Archive& archive) {
+    FactoredProblem<T>::fields(archive);
+    archive.number(mean_row_sum);
+    archive.number(column_norm);
+  }
+};
+
+extern template struct AdmProblem<float>;
+extern template struct AdmProblem<double>;
 
 }  // namespace compueye::recon::core

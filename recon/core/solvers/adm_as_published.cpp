@@ -1,7 +1,7 @@
 #include "recon/core/solvers/adm_as_published.hpp"
 
-#include "recon/core/parts/duality_gap.hpp"
-#include "recon/core/parts/frame_outcome.hpp"
+#include "recon/core/frame/duality_gap.hpp"
+#include "recon/core/frame/frame_loop.hpp"
 #include "recon/core/parts/square_root.hpp"
 #include "recon/core/parts/vector_sums.hpp"
 
@@ -14,7 +14,7 @@ constexpr double least_penalty = 2.220446049250313e-16;  // what stands for lamb
 template <class T>
 class PublishedAdm {
  public:
-  PublishedAdm(const FrameProblem<T>& problem, Workspace& memory) noexcept
+  PublishedAdm(const PublishedAdmProblem<T>& problem, Workspace& memory) noexcept
       : problem_(problem),
         rows_(problem.a.rows),
         n_(problem.pixels()),
@@ -31,18 +31,36 @@ class PublishedAdm {
         scratch_(memory.take<T>(problem.psi.scratch_size())),
         gap_(problem, problem.measure_gap, memory) {}
 
-  FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
-    FrameInfo info = begin_outcome(problem_);
-    if (!samples_.gather(y, weights)) {
-      deliver(picture_, false, n_, info, x);
-      return info;
-    }
-    info.health = Health::converged;
-    if (begin()) info.health = iterate_until_stopped(info.iterations) ? Health::converged : Health::budget_used;
-    finish(info);
-    deliver(picture_, all_finite(x_, n_), n_, info, x);
-    return info;
+  bool begin(const float* y, const float* weights) noexcept {
+    if (!samples_.gather(y, weights)) return false;
+    done_ = 0;
+    stopped_ = !scale_data();
+    return true;
   }
+
+  bool iterate(int k) noexcept {
+    if (stopped_) return false;
+    const double moved = step();
+    done_ = k;
+    stopped_ = k % 2 == 0 && stops(moved);
+    return !stopped_;
+  }
+
+  bool finish(FrameInfo& info) noexcept {
+    for (std::size_t k = 0; k < n_; ++k) x_[k] *= scale_;
+    if (problem_.constrained) {
+      for (std::size_t k = 0; k < n_; ++k) x_[k] = x_[k] > T(0) ? x_[k] : T(0);
+    }
+    synthesise(problem_.psi, x_, picture_, scratch_);
+    evaluate(samples_, picture_, l1_penalty(problem_, x_), row_scratch_, info);
+    if (problem_.bounded) info.objective = static_cast<double>(sum_of_magnitudes(x_, n_));
+    info.duality_gap = gap_.measure(samples_, picture_, nullptr, info.objective);
+    info.iterations = done_;
+    info.health = stopped_ ? Health::converged : Health::budget_used;
+    return all_finite(x_, n_);
+  }
+
+  [[nodiscard]] const T* picture() const noexcept { return picture_; }
 
  private:
   /// out = W^(1/2) A Psi' in
@@ -65,7 +83,7 @@ class PublishedAdm {
   }
 
   /// Scales the data as the original does. False when it would return x = 0 without an iteration.
-  bool begin() noexcept {
+  bool scale_data() noexcept {
     double largest = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < rows_; ++i) {
       b_[i] = root_weight(i) * samples_.values()[i];
@@ -104,7 +122,7 @@ class PublishedAdm {
   }
 
   /// One steepest descent step for y, the projection of z, the multiplier step for x; returns ||x - x before||^2.
-  double iterate() noexcept {
+  double step() noexcept {
     for (std::size_t k = 0; k < n_; ++k) step_back_[k] = back_[k] - z_[k] + x_[k] / penalty_;
     apply(step_back_, row_residual_);
     const T ratio = lambda_ / penalty_;
@@ -112,11 +130,11 @@ class PublishedAdm {
     apply_adjoint(row_residual_, step_back_);
     const double size = static_cast<double>(dot(row_residual_, row_residual_, rows_));
     const double curvature = static_cast<double>(dot(step_back_, step_back_, n_)) + static_cast<double>(ratio) * size;
-    const T step = static_cast<T>(size / (curvature + least_penalty));
-    for (std::size_t i = 0; i < rows_; ++i) y_[i] -= step * row_residual_[i];
+    const T length = static_cast<T>(size / (curvature + least_penalty));
+    for (std::size_t i = 0; i < rows_; ++i) y_[i] -= length * row_residual_[i];
     double moved = 0.0;
     for (std::size_t k = 0; k < n_; ++k) {
-      back_[k] -= step * step_back_[k];
+      back_[k] -= length * step_back_[k];
       const T z = back_[k] + x_[k] / penalty_;
       const T above = problem_.constrained || z > T(-1) ? z : T(-1);
       z_[k] = above < T(1) ? above : T(1);
@@ -126,15 +144,6 @@ class PublishedAdm {
       moved += by * by;
     }
     return moved;
-  }
-
-  bool iterate_until_stopped(int& done) noexcept {
-    for (done = 1; done <= problem_.point.iterations; ++done) {
-      const double moved = iterate();
-      if (done % 2 == 0 && stops(moved)) return true;
-    }
-    --done;
-    return false;
   }
 
   /// Comparisons with NaN (x exactly zero) are false, as in the original.
@@ -159,19 +168,7 @@ class PublishedAdm {
     return square_root(apart) / square_root(static_cast<double>(dot(z_, z_, n_))) < tolerance;
   }
 
-  void finish(FrameInfo& info) noexcept {
-    for (std::size_t k = 0; k < n_; ++k) x_[k] *= scale_;
-    if (problem_.constrained) {
-      for (std::size_t k = 0; k < n_; ++k) x_[k] = x_[k] > T(0) ? x_[k] : T(0);
-    }
-    synthesise(problem_.psi, x_, picture_, scratch_);
-    const double magnitudes = static_cast<double>(sum_of_magnitudes(x_, n_));
-    evaluate(samples_, picture_, static_cast<double>(problem_.lambda) * magnitudes, row_scratch_, info);
-    if (problem_.bounded) info.objective = magnitudes;
-    info.duality_gap = gap_.measure(samples_, picture_, nullptr, info.objective);
-  }
-
-  const FrameProblem<T>& problem_;
+  const PublishedAdmProblem<T>& problem_;
   std::size_t rows_;
   std::size_t n_;
   FrameSamples<T> samples_;
@@ -190,29 +187,15 @@ class PublishedAdm {
   T lambda_ = T(0);
   T penalty_ = T(1);
   double epsilon_ = 0.0;
+  int done_ = 0;
+  bool stopped_ = false;  // by itself
 };
 
 }  // namespace
 
 template <class T>
-FrameInfo solve_adm_as_published(const FrameProblem<T>& problem, const float* y, const float* weights,
-                                 std::byte* workspace, float* x) noexcept {
-  Workspace memory(workspace);
-  return PublishedAdm<T>(problem, memory).solve(y, weights, x);
-}
-
-template <class T>
-std::size_t adm_as_published_bytes(const FrameProblem<T>& problem) noexcept {
-  Workspace counter;
-  const PublishedAdm<T> adm(problem, counter);
-  return counter.used();
-}
-
-template FrameInfo solve_adm_as_published(const FrameProblem<float>&, const float*, const float*, std::byte*,
-                                          float*) noexcept;
-template FrameInfo solve_adm_as_published(const FrameProblem<double>&, const float*, const float*, std::byte*,
-                                          float*) noexcept;
-template std::size_t adm_as_published_bytes(const FrameProblem<float>&) noexcept;
-template std::size_t adm_as_published_bytes(const FrameProblem<double>&) noexcept;
+const Solver<T> PublishedAdmProblem<T>::solver = solver_of<T, PublishedAdmProblem, PublishedAdm>;
+template struct PublishedAdmProblem<float>;
+template struct PublishedAdmProblem<double>;
 
 }  // namespace compueye::recon::core

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstddef>
+#include <string_view>
 
-#include "recon/core/parts/frame_info.hpp"
-#include "recon/core/parts/frame_problem.hpp"
+#include "recon/core/frame/frame_problem.hpp"
+#include "recon/core/frame/solver.hpp"
 
 namespace compueye::recon::core {
 
@@ -17,11 +17,15 @@ namespace compueye::recon::core {
 /// At most problem.point.iterations iterations. Health is what the original claims: converged when it stopped by
 /// itself. Takes pixels with x >= 0 or no constraint, or an orthonormal basis with none.
 template <class T>
-FrameInfo solve_adm_as_published(const FrameProblem<T>& problem, const float* y, const float* weights,
-                                 std::byte* workspace, float* x) noexcept;
+struct PublishedAdmProblem : FrameProblem<T> {
+  static constexpr std::string_view method = "adm as published";
+  static const Solver<T> solver;
 
-/// Bytes of workspace that solve_adm_as_published() uses, exactly.
-template <class T>
-[[nodiscard]] std::size_t adm_as_published_bytes(const FrameProblem<T>& problem) noexcept;
+  template <class Archive>
+  void fields(Archive&) {}
+};
+
+extern template struct PublishedAdmProblem<float>;
+extern template struct PublishedAdmProblem<double>;
 
 }  // namespace compueye::recon::core

@@ -1,11 +1,11 @@
 #include "recon/core/solvers/admm.hpp"
 
-#include "recon/core/parts/duality_gap.hpp"
-#include "recon/core/parts/frame_outcome.hpp"
+#include "recon/core/frame/duality_gap.hpp"
+#include "recon/core/frame/frame_loop.hpp"
+#include "recon/core/frame/split_residuals.hpp"
+#include "recon/core/frame/weighted_step.hpp"
 #include "recon/core/parts/proximal.hpp"
-#include "recon/core/parts/split_residuals.hpp"
 #include "recon/core/parts/vector_sums.hpp"
-#include "recon/core/parts/weighted_step.hpp"
 
 namespace compueye::recon::core {
 namespace {
@@ -58,7 +58,7 @@ struct Copy {
 template <class T>
 class Admm : public MadeInWorkspace {
  public:
-  Admm(const FrameProblem<T>& problem, Workspace& memory) noexcept
+  Admm(const AdmmProblem<T>& problem, Workspace& memory) noexcept
       : problem_(problem),
         n_(problem.pixels()),
         step_(problem, memory),
@@ -81,31 +81,46 @@ class Admm : public MadeInWorkspace {
     set_proximal_maps();
   }
 
-  FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
-    FrameInfo info = begin_outcome(problem_);
-    const bool usable = step_.begin(y, weights);
-    if (!usable) {
-      deliver(x_, false, n_, info, x);
-      return info;
-    }
+  bool begin(const float* y, const float* weights) noexcept {
+    if (!step_.begin(y, weights)) return false;
     clear();
     thin_ = problem_.thin_step.rows > 0 && step_.samples().channels_reweighted() == 0;
     if (thin_) turn_samples(problem_.thin_step, step_.samples().values(), samples_in_order_, residual_in_order_);
     penalty_ = problem_.rho;
-    SplitResiduals residuals;
     in_pixels_.thresholds = nullptr;
     if (reweights()) {
-      for (int k = 0; k < problem_.point.iterations; ++k) iterate(nullptr);
+      for (int k = 0; k < problem_.point.iterations; ++k) meet_and_move(nullptr);
       reweight();
     }
-    for (int k = 1; k <= problem_.point.iterations; ++k) {
-      if (thin_) follow_schedule(k - 1);
-      iterate(k == problem_.point.iterations ? &residuals : nullptr);
-    }
-    finish(residuals, info);
-    deliver(x_, finite_, n_, info, x);
-    return info;
+    return true;
   }
+
+  void iterate(int k) noexcept {
+    if (thin_) follow_schedule(k - 1);
+    meet_and_move(k == problem_.point.iterations ? &residuals_ : nullptr);
+  }
+
+  /// The copy that is feasible (pixels) or sparse (coefficients) is the answer, not the average they are drawn to.
+  bool finish(FrameInfo& info) noexcept {
+    const bool finite = all_finite(x_, n_);  // a clip would turn NaN into a number
+    if (thin_) {
+      restore_picture(problem_.thin_step, in_pixels_.z, x_);
+    } else if (pixel_copy_) {
+      for (std::size_t k = 0; k < n_; ++k) x_[k] = in_pixels_.z[k];
+      if (sparse_basis_) analyse(problem_.psi, x_, coefficients_, scratch_);
+    } else {
+      synthesise(problem_.psi, in_basis_.z, x_, scratch_);
+      for (std::size_t k = 0; k < n_; ++k) coefficients_[k] = in_basis_.z[k];
+    }
+    const T* penalised = sparse_basis_ ? coefficients_ : x_;
+    const double penalty = reweights() ? weighted_penalty() : l1_penalty(problem_, penalised);
+    evaluate(step_.samples(), x_, penalty, step_.row_scratch(), info);
+    if (!reweights()) info.duality_gap = gap_.measure(step_.samples(), x_, basis_dual(), info.objective);
+    residuals_.judge((reweights() ? 2 : 1) * problem_.point.iterations, info);
+    return finite;
+  }
+
+  [[nodiscard]] const T* picture() const noexcept { return x_; }
 
  private:
   [[nodiscard]] bool reweights() const noexcept { return problem_.l1_reweighting > T(0); }
@@ -131,15 +146,14 @@ class Admm : public MadeInWorkspace {
   }
 
   void set_proximal_maps() noexcept {
-    constexpr T unbounded = T(1e30);
     const bool shared = sparse_basis_ && pixel_copy_ && !smooth_;
     const T penalty = shared ? problem_.rho * T(0.5) : problem_.rho;
     in_basis_.threshold = problem_.lambda / penalty;
-    in_basis_.lo = -unbounded;
-    in_basis_.hi = unbounded;
+    in_basis_.lo = T(-no_bound);
+    in_basis_.hi = T(no_bound);
     in_pixels_.threshold = sparse_basis_ ? T(0) : in_basis_.threshold;
-    in_pixels_.lo = problem_.constrained && problem_.lo > -unbounded ? problem_.lo : -unbounded;
-    in_pixels_.hi = problem_.constrained && problem_.hi < unbounded ? problem_.hi : unbounded;
+    in_pixels_.lo = problem_.lo;
+    in_pixels_.hi = problem_.hi;
   }
 
   void clear() noexcept {
@@ -159,7 +173,7 @@ class Admm : public MadeInWorkspace {
     for (std::size_t k = 0; k < n_; ++k) in_pixels_.u[k] *= scale;
   }
 
-  void iterate(SplitResiduals* residuals) noexcept {
+  void meet_and_move(SplitResiduals* residuals) noexcept {
     meet();
     if (thin_) {
       apply(problem_.thin_step, level_, samples_in_order_, x_, residual_in_order_);
@@ -196,27 +210,6 @@ class Admm : public MadeInWorkspace {
     }
   }
 
-  /// The copy that is feasible (pixels) or sparse (coefficients) is the answer, not the average they are drawn to.
-  void finish(const SplitResiduals& residuals, FrameInfo& info) noexcept {
-    finite_ = all_finite(x_, n_);  // a clip would turn NaN into a number
-    if (thin_) {
-      restore_picture(problem_.thin_step, in_pixels_.z, x_);
-    } else if (pixel_copy_) {
-      for (std::size_t k = 0; k < n_; ++k) x_[k] = in_pixels_.z[k];
-      if (sparse_basis_) analyse(problem_.psi, x_, coefficients_, scratch_);
-    } else {
-      synthesise(problem_.psi, in_basis_.z, x_, scratch_);
-      for (std::size_t k = 0; k < n_; ++k) coefficients_[k] = in_basis_.z[k];
-    }
-    const T* penalised = sparse_basis_ ? coefficients_ : x_;
-    const double penalty = reweights() ? weighted_penalty()
-                                       : static_cast<double>(problem_.lambda) *
-                                             static_cast<double>(sum_of_magnitudes(penalised, coefficient_count_));
-    evaluate(step_.samples(), x_, penalty, step_.row_scratch(), info);
-    if (!reweights()) info.duality_gap = gap_.measure(step_.samples(), x_, basis_dual(), info.objective);
-    residuals.judge((reweights() ? 2 : 1) * problem_.point.iterations, info);
-  }
-
   /// Unscaled, where what the coefficients were is no longer needed.
   const T* basis_dual() noexcept {
     if (!sparse_basis_ || !problem_.measure_gap) return nullptr;
@@ -225,7 +218,7 @@ class Admm : public MadeInWorkspace {
     return coefficients_;
   }
 
-  const FrameProblem<T>& problem_;
+  const AdmmProblem<T>& problem_;
   std::size_t n_;
   WeightedStep<T> step_;
   T* x_;
@@ -245,30 +238,14 @@ class Admm : public MadeInWorkspace {
   T* scratch_ = nullptr;
   Copy<T> in_basis_;
   Copy<T> in_pixels_;
-  bool finite_ = true;
+  SplitResiduals residuals_;  // of the last iteration
 };
 
 }  // namespace
 
 template <class T>
-FrameInfo solve_admm(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                     float* x) noexcept {
-  Workspace memory(workspace);
-  auto* place = memory.take<Admm<T>>(1);
-  return (new (place) Admm<T>(problem, memory))->solve(y, weights, x);
-}
-
-template <class T>
-std::size_t admm_bytes(const FrameProblem<T>& problem) noexcept {
-  Workspace counter;
-  static_cast<void>(counter.take<Admm<T>>(1));
-  const Admm<T> admm(problem, counter);
-  return counter.used();
-}
-
-template FrameInfo solve_admm(const FrameProblem<float>&, const float*, const float*, std::byte*, float*) noexcept;
-template FrameInfo solve_admm(const FrameProblem<double>&, const float*, const float*, std::byte*, float*) noexcept;
-template std::size_t admm_bytes(const FrameProblem<float>&) noexcept;
-template std::size_t admm_bytes(const FrameProblem<double>&) noexcept;
+const Solver<T> AdmmProblem<T>::solver = solver_of<T, AdmmProblem, Admm>;
+template struct AdmmProblem<float>;
+template struct AdmmProblem<double>;
 
 }  // namespace compueye::recon::core

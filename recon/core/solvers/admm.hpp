@@ -1,9 +1,11 @@
 #pragma once
 
-#include <cstddef>
+#include <string_view>
 
-#include "recon/core/parts/frame_info.hpp"
-#include "recon/core/parts/frame_problem.hpp"
+#include "recon/core/frame/frame_problem.hpp"
+#include "recon/core/frame/solver.hpp"
+#include "recon/core/parts/penalty_schedule.hpp"
+#include "recon/core/parts/thin_step.hpp"
 
 namespace compueye::recon::core {
 
@@ -21,11 +23,26 @@ namespace compueye::recon::core {
 /// weights from the first pass, see Plan; the objective is then the weighted one, and there is no duality gap. `y` and
 /// `weights` have problem.channels entries (weights null: all one), x has problem.pixels().
 template <class T>
-FrameInfo solve_admm(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                     float* x) noexcept;
+struct AdmmProblem : FactoredProblem<T> {
+  static constexpr std::string_view method = "admm";
+  static const Solver<T> solver;
 
-/// Bytes of workspace that solve_admm() uses, exactly.
-template <class T>
-[[nodiscard]] std::size_t admm_bytes(const FrameProblem<T>& problem) noexcept;
+  ThinStep<T> thin_step;        ///< in pixels, of a small eye
+  PenaltySchedule<T> schedule;  ///< with a thin step
+  T relaxation = T(1);
+  T l1_reweighting = T(0);  ///< in pixels: e of the second pass's weights 2e / (|x| + e); 0: one pass
+
+  template <class Archive>
+  void fields(Archive& archive) {
+    FactoredProblem<T>::fields(archive);
+    describe(thin_step, archive);
+    describe(schedule, archive);
+    archive.number(relaxation);
+    archive.number(l1_reweighting);
+  }
+};
+
+extern template struct AdmmProblem<float>;
+extern template struct AdmmProblem<double>;
 
 }  // namespace compueye::recon::core

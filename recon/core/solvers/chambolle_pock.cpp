@@ -1,7 +1,7 @@
 #include "recon/core/solvers/chambolle_pock.hpp"
 
-#include "recon/core/parts/duality_gap.hpp"
-#include "recon/core/parts/frame_outcome.hpp"
+#include "recon/core/frame/duality_gap.hpp"
+#include "recon/core/frame/frame_loop.hpp"
 #include "recon/core/parts/proximal.hpp"
 #include "recon/core/parts/square_root.hpp"
 #include "recon/core/parts/vector_sums.hpp"
@@ -12,7 +12,7 @@ namespace {
 template <class T>
 class ChambollePock {
  public:
-  ChambollePock(const FrameProblem<T>& problem, Workspace& memory) noexcept
+  ChambollePock(const ChambollePockProblem<T>& problem, Workspace& memory) noexcept
       : problem_(problem),
         n_(problem.pixels()),
         coefficient_count_(problem.psi.coefficients()),
@@ -27,24 +27,30 @@ class ChambollePock {
         scratch_(memory.take<T>(problem.psi.scratch_size())),
         gap_(problem, true, memory) {}
 
-  FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
-    FrameInfo info = begin_outcome(problem_);
-    if (!samples_.gather(y, weights)) {
-      deliver(projected_, false, n_, info, x);
-      return info;
-    }
+  bool begin(const float* y, const float* weights) noexcept {
+    if (!samples_.gather(y, weights)) return false;
     for (std::size_t k = 0; k < n_; ++k) x_[k] = ahead_[k] = T(0);
     for (std::size_t i = 0; i < problem_.a.rows; ++i) row_dual_[i] = T(0);
     for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = T(0);
-    double moved = 1.0;
-    for (int k = 0; k < problem_.point.iterations; ++k) {
-      ascend();
-      moved = descend();
-    }
-    finish(moved, info);
-    deliver(projected_, finite_, n_, info, x);
-    return info;
+    return true;
   }
+
+  void iterate(int) noexcept {
+    ascend();
+    moved_ = descend();
+  }
+
+  bool finish(FrameInfo& info) noexcept {
+    analyse(problem_.psi, projected_, coefficients_, scratch_);
+    evaluate(samples_, projected_, l1_penalty(problem_, coefficients_), residual_, info);
+    // Relaxation may have carried them beyond their bounds.
+    for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = within(basis_dual_[k], problem_.lambda);
+    info.primal_residual = moved_;
+    judge_by_gap(problem_, gap_.measure(samples_, projected_, basis_dual_, info.objective), info);
+    return all_finite(x_, n_);  // the projection would have turned NaN into a number
+  }
+
+  [[nodiscard]] const T* picture() const noexcept { return projected_; }
 
  private:
   /// Duals: u = w (u + s (A x - y)) / (w + s), which is 0 for a missing channel; q = clip(q + s Psi x, +-lambda).
@@ -72,11 +78,9 @@ class ChambollePock {
   double descend() noexcept {
     synthesise(problem_.psi, basis_dual_, projected_, scratch_);
     samples_.adjoint_accumulate(row_dual_, projected_);
-    const T lo = problem_.constrained && problem_.lo > T(-1e30) ? problem_.lo : T(-1e30);
-    const T hi = problem_.constrained && problem_.hi < T(1e30) ? problem_.hi : T(1e30);
     problem_.crew.share(n_, n_, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        projected_[k] = prox_l1_box(x_[k] - problem_.primal_steps[k] * projected_[k], T(0), lo, hi);
+        projected_[k] = prox_l1_box(x_[k] - problem_.primal_steps[k] * projected_[k], T(0), problem_.lo, problem_.hi);
       }
     });
     flush_tiny(projected_, n_);
@@ -91,22 +95,7 @@ class ChambollePock {
     return size > 0.0 ? square_root(moved / size) : 0.0;
   }
 
-  void finish(double moved, FrameInfo& info) noexcept {
-    finite_ = all_finite(x_, n_);  // the projection would have turned NaN into a number
-    analyse(problem_.psi, projected_, coefficients_, scratch_);
-    const double penalty = static_cast<double>(problem_.lambda) *
-                           static_cast<double>(sum_of_magnitudes(coefficients_, coefficient_count_));
-    evaluate(samples_, projected_, penalty, residual_, info);
-    // Relaxation may have carried them beyond their bounds.
-    for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = within(basis_dual_[k], problem_.lambda);
-    const double gap = gap_.measure(samples_, projected_, basis_dual_, info.objective);
-    info.duality_gap = problem_.measure_gap ? gap : -1.0;
-    info.primal_residual = moved;
-    info.iterations = problem_.point.iterations;
-    info.health = health_by_gap(gap, info.objective, moved);
-  }
-
-  const FrameProblem<T>& problem_;
+  const ChambollePockProblem<T>& problem_;
   std::size_t n_;
   std::size_t coefficient_count_;
   FrameSamples<T> samples_;
@@ -119,30 +108,14 @@ class ChambollePock {
   T* coefficients_;
   T* scratch_;
   DualityGap<T> gap_;
-  bool finite_ = true;
+  double moved_ = 1.0;  // by the last iteration, relative to the picture
 };
 
 }  // namespace
 
 template <class T>
-FrameInfo solve_chambolle_pock(const FrameProblem<T>& problem, const float* y, const float* weights,
-                               std::byte* workspace, float* x) noexcept {
-  Workspace memory(workspace);
-  return ChambollePock<T>(problem, memory).solve(y, weights, x);
-}
-
-template <class T>
-std::size_t chambolle_pock_bytes(const FrameProblem<T>& problem) noexcept {
-  Workspace counter;
-  const ChambollePock<T> method(problem, counter);
-  return counter.used();
-}
-
-template FrameInfo solve_chambolle_pock(const FrameProblem<float>&, const float*, const float*, std::byte*,
-                                        float*) noexcept;
-template FrameInfo solve_chambolle_pock(const FrameProblem<double>&, const float*, const float*, std::byte*,
-                                        float*) noexcept;
-template std::size_t chambolle_pock_bytes(const FrameProblem<float>&) noexcept;
-template std::size_t chambolle_pock_bytes(const FrameProblem<double>&) noexcept;
+const Solver<T> ChambollePockProblem<T>::solver = solver_of<T, ChambollePockProblem, ChambollePock>;
+template struct ChambollePockProblem<float>;
+template struct ChambollePockProblem<double>;
 
 }  // namespace compueye::recon::core

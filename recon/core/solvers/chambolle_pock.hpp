@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstddef>
+#include <string_view>
 
-#include "recon/core/parts/frame_info.hpp"
-#include "recon/core/parts/frame_problem.hpp"
+#include "recon/core/frame/frame_problem.hpp"
+#include "recon/core/frame/solver.hpp"
 
 namespace compueye::recon::core {
 
@@ -18,11 +18,25 @@ namespace compueye::recon::core {
 /// Steps from problem.primal_steps, dual_steps and basis_step (recon/setup/step_sizes.hpp); exactly
 /// problem.point.iterations iterations; the returned x satisfies the constraint exactly.
 template <class T>
-FrameInfo solve_chambolle_pock(const FrameProblem<T>& problem, const float* y, const float* weights,
-                               std::byte* workspace, float* x) noexcept;
+struct ChambollePockProblem : FrameProblem<T> {
+  static constexpr std::string_view method = "cp";
+  static const Solver<T> solver;
 
-/// Bytes of workspace that solve_chambolle_pock() uses, exactly.
-template <class T>
-[[nodiscard]] std::size_t chambolle_pock_bytes(const FrameProblem<T>& problem) noexcept;
+  const T* primal_steps = nullptr;  ///< a.cols of them (recon/setup/step_sizes.hpp)
+  const T* dual_steps = nullptr;    ///< a.rows of them
+  T basis_step = T(0);
+  T relaxation = T(1);
+
+  template <class Archive>
+  void fields(Archive& archive) {
+    archive.table(primal_steps, this->a.cols);
+    archive.table(dual_steps, this->a.rows);
+    archive.number(basis_step);
+    archive.number(relaxation);
+  }
+};
+
+extern template struct ChambollePockProblem<float>;
+extern template struct ChambollePockProblem<double>;
 
 }  // namespace compueye::recon::core

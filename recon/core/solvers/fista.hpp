@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstddef>
+#include <string_view>
 
-#include "recon/core/parts/frame_info.hpp"
-#include "recon/core/parts/frame_problem.hpp"
+#include "recon/core/frame/frame_problem.hpp"
+#include "recon/core/frame/solver.hpp"
 
 namespace compueye::recon::core {
 
@@ -13,11 +13,19 @@ namespace compueye::recon::core {
 ///
 /// Steps of 1 / problem.lipschitz; exactly problem.point.iterations iterations. Health by the duality gap.
 template <class T>
-FrameInfo solve_fista(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                      float* x) noexcept;
+struct FistaProblem : FrameProblem<T> {
+  static constexpr std::string_view method = "fista";
+  static const Solver<T> solver;
 
-/// Bytes of workspace that solve_fista() uses, exactly.
-template <class T>
-[[nodiscard]] std::size_t fista_bytes(const FrameProblem<T>& problem) noexcept;
+  T lipschitz = T(1);  ///< at least ||A||_2^2
+
+  template <class Archive>
+  void fields(Archive& archive) {
+    archive.number(lipschitz);
+  }
+};
+
+extern template struct FistaProblem<float>;
+extern template struct FistaProblem<double>;
 
 }  // namespace compueye::recon::core

@@ -1,6 +1,6 @@
 #include "recon/core/solvers/omp.hpp"
 
-#include "recon/core/parts/frame_outcome.hpp"
+#include "recon/core/frame/frame_loop.hpp"
 #include "recon/core/parts/square_root.hpp"
 #include "recon/core/parts/vector_sums.hpp"
 
@@ -65,7 +65,7 @@ class TakenAtoms {
 template <class T>
 class Omp {
  public:
-  Omp(const FrameProblem<T>& problem, Workspace& memory) noexcept
+  Omp(const OmpProblem<T>& problem, Workspace& memory) noexcept
       : problem_(problem),
         n_(problem.pixels()),
         rows_(problem.a.rows),
@@ -83,24 +83,29 @@ class Omp {
         scratch_(memory.take<T>(problem.psi.scratch_size())),
         coefficients_(memory.take<T>(n_)) {}
 
-  FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
-    FrameInfo info = begin_outcome(problem_);
-    if (!samples_.gather(y, weights)) {
-      deliver(picture_, false, n_, info, x);
-      return info;
-    }
-    begin();
-    bool done = explained();
-    while (!done && taken_.count() < most_ && take_best()) {
-      compose();
-      done = explained();
-    }
-    info.health = done ? Health::converged : Health::budget_used;
+  bool begin(const float* y, const float* weights) noexcept {
+    if (!samples_.gather(y, weights)) return false;
+    take_nothing();
+    done_ = explained();
+    return true;
+  }
+
+  /// Takes an element.
+  bool iterate(int) noexcept {
+    if (done_ || taken_.count() == most_ || !take_best()) return false;
+    compose();
+    done_ = explained();
+    return true;
+  }
+
+  bool finish(FrameInfo& info) noexcept {
+    info.health = done_ ? Health::converged : Health::budget_used;
     info.iterations = static_cast<int>(taken_.count());
     evaluate(samples_, picture_, 0.0, residual_, info);
-    deliver(picture_, true, n_, info, x);
-    return info;
+    return true;
   }
+
+  [[nodiscard]] const T* picture() const noexcept { return picture_; }
 
  private:
   /// back_ = A' row, coefficients_ = Psi A' row
@@ -110,8 +115,8 @@ class Omp {
     analyse(problem_.psi, back_, coefficients_, scratch_);
   }
 
-  /// Nothing taken; ||W^(1/2) A psi_j||^2 are the stored norms less what reweighted rows lack.
-  void begin() noexcept {
+  /// ||W^(1/2) A psi_j||^2 are the stored norms less what reweighted rows lack.
+  void take_nothing() noexcept {
     taken_.clear();
     for (std::size_t k = 0; k < n_; ++k) {
       const double norm = static_cast<double>(problem_.atom_norms[k]);
@@ -196,7 +201,7 @@ class Omp {
     synthesise(problem_.psi, back_, picture_, scratch_);
   }
 
-  const FrameProblem<T>& problem_;
+  const OmpProblem<T>& problem_;
   std::size_t n_;
   std::size_t rows_;
   std::size_t most_;
@@ -210,27 +215,14 @@ class Omp {
   T* back_;
   T* scratch_;
   T* coefficients_;
+  bool done_ = false;  // nothing is left to explain
 };
 
 }  // namespace
 
 template <class T>
-FrameInfo solve_omp(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                    float* x) noexcept {
-  Workspace memory(workspace);
-  return Omp<T>(problem, memory).solve(y, weights, x);
-}
-
-template <class T>
-std::size_t omp_bytes(const FrameProblem<T>& problem) noexcept {
-  Workspace counter;
-  const Omp<T> omp(problem, counter);
-  return counter.used();
-}
-
-template FrameInfo solve_omp(const FrameProblem<float>&, const float*, const float*, std::byte*, float*) noexcept;
-template FrameInfo solve_omp(const FrameProblem<double>&, const float*, const float*, std::byte*, float*) noexcept;
-template std::size_t omp_bytes(const FrameProblem<float>&) noexcept;
-template std::size_t omp_bytes(const FrameProblem<double>&) noexcept;
+const Solver<T> OmpProblem<T>::solver = solver_of<T, OmpProblem, Omp>;
+template struct OmpProblem<float>;
+template struct OmpProblem<double>;
 
 }  // namespace compueye::recon::core

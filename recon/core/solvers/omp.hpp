@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstddef>
+#include <string_view>
 
-#include "recon/core/parts/frame_info.hpp"
-#include "recon/core/parts/frame_problem.hpp"
+#include "recon/core/frame/frame_problem.hpp"
+#include "recon/core/frame/solver.hpp"
 
 namespace compueye::recon::core {
 
@@ -16,11 +16,19 @@ namespace compueye::recon::core {
 /// The objective is 1/2 ||W^(1/2)(A x - y)||^2 alone, iterations is the number of elements; converged when it stopped
 /// by lambda or epsilon. An element that depends on those taken, to a millionth of its norm, is passed over.
 template <class T>
-FrameInfo solve_omp(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                    float* x) noexcept;
+struct OmpProblem : FrameProblem<T> {
+  static constexpr std::string_view method = "omp";
+  static const Solver<T> solver;
 
-/// Bytes of workspace that solve_omp() uses, exactly.
-template <class T>
-[[nodiscard]] std::size_t omp_bytes(const FrameProblem<T>& problem) noexcept;
+  const T* atom_norms = nullptr;  ///< a.cols norms ||A psi_j||
+
+  template <class Archive>
+  void fields(Archive& archive) {
+    archive.table(atom_norms, this->a.cols);
+  }
+};
+
+extern template struct OmpProblem<float>;
+extern template struct OmpProblem<double>;
 
 }  // namespace compueye::recon::core

@@ -1,9 +1,11 @@
 #pragma once
 
-#include <cstddef>
+#include <string_view>
 
-#include "recon/core/parts/frame_info.hpp"
-#include "recon/core/parts/frame_problem.hpp"
+#include "recon/core/frame/frame_problem.hpp"
+#include "recon/core/frame/solver.hpp"
+#include "recon/core/parts/deflated_step.hpp"
+#include "recon/core/parts/penalty_schedule.hpp"
 
 namespace compueye::recon::core {
 
@@ -23,11 +25,29 @@ namespace compueye::recon::core {
 /// samples have changed too much (core/warm_start.hpp). Exactly problem.point.iterations iterations; the x handed out
 /// satisfies the constraint exactly. Health by the duality gap where it is measured, else by the last steps of x and u.
 template <class T>
-FrameInfo solve_pdhg(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                     float* x) noexcept;
+struct PdhgProblem : FrameProblem<T> {
+  static constexpr std::string_view method = "pdhg";
+  static const Solver<T> solver;
 
-/// Bytes of workspace that solve_pdhg() uses, exactly.
-template <class T>
-[[nodiscard]] std::size_t pdhg_bytes(const FrameProblem<T>& problem) noexcept;
+  T rho = T(1);                 ///< 1 / tau
+  PenaltySchedule<T> schedule;  ///< of rho
+  T relaxation = T(1);
+  T basis_step = T(0);
+  DeflatedStep<T> dual_step;
+  bool warm_start = false;  ///< frames go on from the last one
+
+  template <class Archive>
+  void fields(Archive& archive) {
+    archive.number(rho);
+    describe(schedule, archive);
+    archive.number(relaxation);
+    archive.number(basis_step);
+    describe(dual_step, archive);
+    archive.number(warm_start);
+  }
+};
+
+extern template struct PdhgProblem<float>;
+extern template struct PdhgProblem<double>;
 
 }  // namespace compueye::recon::core

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstddef>
+#include <string_view>
 
-#include "recon/core/parts/frame_info.hpp"
-#include "recon/core/parts/frame_problem.hpp"
+#include "recon/core/frame/frame_problem.hpp"
+#include "recon/core/frame/solver.hpp"
 
 namespace compueye::recon::core {
 
@@ -11,11 +11,12 @@ namespace compueye::recon::core {
 /// Gaussian prior of variance s^2 it is the posterior mean for lambda = sigma^2 / s^2). problem.rho must equal
 /// problem.lambda; basis and constraint are not used.
 template <class T>
-FrameInfo solve_tikhonov(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                         float* x) noexcept;
+struct TikhonovProblem : FactoredProblem<T> {
+  static constexpr std::string_view method = "tikhonov";
+  static const Solver<T> solver;
+};
 
-/// Bytes of workspace that solve_tikhonov() uses, exactly.
-template <class T>
-[[nodiscard]] std::size_t tikhonov_bytes(const FrameProblem<T>& problem) noexcept;
+extern template struct TikhonovProblem<float>;
+extern template struct TikhonovProblem<double>;
 
 }  // namespace compueye::recon::core

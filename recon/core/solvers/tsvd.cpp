@@ -1,7 +1,7 @@
 #include "recon/core/solvers/tsvd.hpp"
 
+#include "recon/core/frame/frame_loop.hpp"
 #include "recon/core/parts/cholesky.hpp"
-#include "recon/core/parts/frame_outcome.hpp"
 #include "recon/core/parts/proximal.hpp"
 #include "recon/core/parts/vector_sums.hpp"
 
@@ -14,7 +14,7 @@ constexpr double open_direction = 1e-5;
 template <class T>
 class Tsvd {
  public:
-  Tsvd(const FrameProblem<T>& problem, Workspace& memory) noexcept
+  Tsvd(const TsvdProblem<T>& problem, Workspace& memory) noexcept
       : problem_(problem),
         rows_(problem.a.rows),
         n_(problem.pixels()),
@@ -26,24 +26,27 @@ class Tsvd {
         system_(memory.take<double>(problem.max_reweighted * problem.max_reweighted)),
         unknown_(memory.take<double>(problem.max_reweighted)) {}
 
-  FrameInfo solve(const float* y, const float* weights, float* x) noexcept {
-    FrameInfo info = begin_outcome(problem_);
-    if (!samples_.gather(y, weights) || samples_.channels_reweighted() > problem_.max_reweighted || !fill()) {
-      deliver(picture_, false, n_, info, x);
-      return info;
-    }
+  bool begin(const float* y, const float* weights) noexcept {
+    return samples_.gather(y, weights) && samples_.channels_reweighted() <= problem_.max_reweighted && fill();
+  }
+
+  void iterate(int) noexcept {
     project(filled_);
     for (std::size_t r = 0; r < problem_.modes.rank; ++r) modes_[r] *= problem_.modes.inverse_squares[r];
     for (std::size_t i = 0; i < rows_; ++i) filled_[i] = dot(row(i), modes_, problem_.modes.rank);
     for (std::size_t k = 0; k < n_; ++k) picture_[k] = T(0);
     samples_.adjoint_accumulate(filled_, picture_);
     flush_tiny(picture_, n_);
+  }
+
+  bool finish(FrameInfo& info) noexcept {
     evaluate(samples_, picture_, 0.0, filled_, info);
     info.iterations = 1;
     info.health = Health::converged;
-    deliver(picture_, true, n_, info, x);
-    return info;
+    return true;
   }
+
+  [[nodiscard]] const T* picture() const noexcept { return picture_; }
 
  private:
   [[nodiscard]] const T* row(std::size_t i) const noexcept { return problem_.modes.left + i * problem_.modes.rank; }
@@ -78,7 +81,7 @@ class Tsvd {
     return true;
   }
 
-  const FrameProblem<T>& problem_;
+  const TsvdProblem<T>& problem_;
   std::size_t rows_;
   std::size_t n_;
   FrameSamples<T> samples_;
@@ -93,22 +96,8 @@ class Tsvd {
 }  // namespace
 
 template <class T>
-FrameInfo solve_tsvd(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                     float* x) noexcept {
-  Workspace memory(workspace);
-  return Tsvd<T>(problem, memory).solve(y, weights, x);
-}
-
-template <class T>
-std::size_t tsvd_bytes(const FrameProblem<T>& problem) noexcept {
-  Workspace counter;
-  const Tsvd<T> tsvd(problem, counter);
-  return counter.used();
-}
-
-template FrameInfo solve_tsvd(const FrameProblem<float>&, const float*, const float*, std::byte*, float*) noexcept;
-template FrameInfo solve_tsvd(const FrameProblem<double>&, const float*, const float*, std::byte*, float*) noexcept;
-template std::size_t tsvd_bytes(const FrameProblem<float>&) noexcept;
-template std::size_t tsvd_bytes(const FrameProblem<double>&) noexcept;
+const Solver<T> TsvdProblem<T>::solver = solver_of<T, TsvdProblem, Tsvd>;
+template struct TsvdProblem<float>;
+template struct TsvdProblem<double>;
 
 }  // namespace compueye::recon::core

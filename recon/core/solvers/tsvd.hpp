@@ -1,11 +1,20 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 
-#include "recon/core/parts/frame_info.hpp"
-#include "recon/core/parts/frame_problem.hpp"
+#include "recon/core/frame/frame_problem.hpp"
+#include "recon/core/frame/solver.hpp"
 
 namespace compueye::recon::core {
+
+/// Leading singular pairs of A: its left singular vectors and the inverse squares of its singular values.
+template <class T>
+struct SingularModes {
+  std::size_t rank = 0;
+  const T* left = nullptr;             ///< a.rows x rank, row-major
+  const T* inverse_squares = nullptr;  ///< rank
+};
 
 /// Truncated singular value decomposition (Hansen 1998, "Rank-deficient and discrete ill-posed problems", section 3.2):
 /// x = A' U S^-2 d over the `rank` leading singular pairs of A, with d = U'y; a linear answer, in pixels, without
@@ -15,11 +24,21 @@ namespace compueye::recon::core {
 ///
 /// The objective is 1/2 ||W^(1/2)(A x - y)||^2.
 template <class T>
-FrameInfo solve_tsvd(const FrameProblem<T>& problem, const float* y, const float* weights, std::byte* workspace,
-                     float* x) noexcept;
+struct TsvdProblem : FrameProblem<T> {
+  static constexpr std::string_view method = "tsvd";
+  static const Solver<T> solver;
 
-/// Bytes of workspace that solve_tsvd() uses, exactly.
-template <class T>
-[[nodiscard]] std::size_t tsvd_bytes(const FrameProblem<T>& problem) noexcept;
+  SingularModes<T> modes;
+
+  template <class Archive>
+  void fields(Archive& archive) {
+    archive.number(modes.rank);
+    archive.table(modes.left, this->a.rows * modes.rank);
+    archive.table(modes.inverse_squares, modes.rank);
+  }
+};
+
+extern template struct TsvdProblem<float>;
+extern template struct TsvdProblem<double>;
 
 }  // namespace compueye::recon::core

@@ -8,7 +8,7 @@
 
 #include "firmware/files/png.hpp"
 #include "recon/option_names.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/firmware/cli_run/copied_board.hpp"
 #include "tests/firmware/cli_run/refused.hpp"
 

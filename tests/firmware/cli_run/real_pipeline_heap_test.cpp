@@ -8,6 +8,7 @@
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/pipeline/pipeline.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
 using namespace compueye;
@@ -48,9 +49,9 @@ TEST_CASE("the whole runtime, with the simulated eye and the real solver, does n
   auto board = load_board(COMPUEYE_SOURCE_DIR "/boards/sim-8x8");
   REQUIRE(board.has_value());
   board->sensor.dead = {5, 9};
-  for (const recon::SolverKind solver_kind : {recon::SolverKind::admm, recon::SolverKind::tikhonov}) {
+  for (const recon::SolverKind solver_kind : {recon::solver_named("admm"), recon::solver_named("tikhonov")}) {
     board->plan.solver = solver_kind;
-    if (solver_kind == recon::SolverKind::tikhonov) board->objective.constraint = recon::ConstraintKind::none;
+    if (solver_kind == recon::solver_named("tikhonov")) board->objective.constraint = recon::ConstraintKind::none;
     board->plan.iterations = 20;
     const auto eye = ReadyEye::make(*board, {}, {});
     REQUIRE_MESSAGE(eye.has_value(), eye.error().text());

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "firmware/operating_points/measured_points.hpp"
+#include "recon/solver_list.hpp"
 
 namespace compueye::test {
 
@@ -31,7 +32,7 @@ inline firmware::Sweep some_sweep(const std::vector<SomePoint>& points) {
   sweep.conventional = {summary(0.6), summary(0.7)};
   for (const SomePoint& some : points) {
     firmware::MeasuredPoint point;
-    point.curve = {recon::SolverKind::admm, some.basis, recon::ConstraintKind::box, recon::Precision::f32};
+    point.curve = {recon::solver_named("admm"), some.basis, recon::ConstraintKind::box, recon::Precision::f32};
     point.op = recon::OperatorKind::running_sums_symmetric;
     point.iterations = some.iterations;
     point.median_ms = some.ms;

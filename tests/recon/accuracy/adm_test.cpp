@@ -6,6 +6,7 @@
 
 #include "recon/reference/dense_algebra.hpp"
 #include "recon/reference/reference_solver.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"
@@ -14,7 +15,7 @@ using namespace compueye;
 using namespace compueye::tests;
 using recon::BasisKind;
 using recon::ConstraintKind;
-using recon::SolverKind;
+using recon::solver_named;
 
 namespace {
 
@@ -81,7 +82,7 @@ TEST_CASE("adm with epsilon: the bound holds and the l1 norm is the least, for r
         const Bounded b = bounded_problem(problem, objective, random, weighted);
         objective.epsilon = b.epsilon;
         recon::Plan plan;
-        plan.solver = SolverKind::adm;
+        plan.solver = solver_named("adm");
         plan.iterations = 5000;
         plan.max_reweighted = problem.a.rows();
         plan.measure_gap = true;
@@ -111,7 +112,7 @@ TEST_CASE("adm as published never looks at epsilon in a step: its residual has n
   objective.lambda = 0.1;
   const Bounded b = bounded_problem(problem, objective, random, false);
   recon::Plan plan;
-  plan.solver = SolverKind::adm_as_published;
+  plan.solver = solver_named("adm as published");
   plan.iterations = 20000;
   std::vector<float> last;
   for (const double share : {0.5, 1.0, 1.5}) {
@@ -121,10 +122,10 @@ TEST_CASE("adm as published never looks at epsilon in a step: its residual has n
     CHECK(std::abs(frame.info.residual - *objective.epsilon) > 0.2 * *objective.epsilon);
     if (!last.empty()) CHECK(relative_difference(frame.x, last) < 1e-2);
     last = frame.x;
-    plan.solver = SolverKind::adm;
+    plan.solver = solver_named("adm");
     const auto right = recon::Reconstructor::create(problem.a, objective, plan).value();
     CHECK(solve_frame(right, to_float(b.y)).info.residual == doctest::Approx(*objective.epsilon).epsilon(1e-3));
-    plan.solver = SolverKind::adm_as_published;
+    plan.solver = solver_named("adm as published");
   }
 }
 
@@ -143,7 +144,7 @@ TEST_CASE("adm as published is right where it was meant to be: on orthonormal ro
   objective.lambda = 0.01;
   const auto best = recon::reference::solve_reference(a, objective, std::vector<double>(y.begin(), y.end()));
   recon::Plan plan;
-  plan.solver = SolverKind::adm_as_published;
+  plan.solver = solver_named("adm as published");
   plan.precision = recon::Precision::f64;
   plan.iterations = 2000;
   const SolvedFrame frame = solve_frame(recon::Reconstructor::create(a, objective, plan).value(), to_float(y));

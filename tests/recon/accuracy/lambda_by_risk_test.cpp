@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "recon/solver_list.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
 
@@ -83,7 +84,7 @@ TEST_CASE("the risk is estimated without bias") {
   Objective objective;
   objective.lambda = 20.0;
   Plan plan;
-  plan.solver = SolverKind::tikhonov;
+  plan.solver = solver_named("tikhonov");
   plan.precision = Precision::f64;
   constexpr double sigma = 0.5;
   double estimated = 0.0, actual = 0.0;

@@ -8,6 +8,7 @@
 #include "recon/setup/dual_step_tables.hpp"
 #include "recon/setup/leading_modes.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
 
@@ -163,8 +164,8 @@ TEST_CASE("a few modes make pdhg converge in tens of iterations, with and withou
   const recon::Response symmetric = wide_eye();
   for (const recon::Response& a : {symmetric, without_symmetry(symmetric)}) {
     const Frame frame = noisy_blocks(a);
-    const auto best = solved(a, frame, plan_of(recon::SolverKind::admm, 20'000, recon::Precision::f64)).objective;
-    recon::Plan plan = plan_of(recon::SolverKind::pdhg, 200);
+    const auto best = solved(a, frame, plan_of(recon::solver_named("admm"), 20'000, recon::Precision::f64)).objective;
+    recon::Plan plan = plan_of(recon::solver_named("pdhg"), 200);
     plan.rank = 96;
     const double with_modes = solved(a, frame, plan).objective / best - 1.0;
     plan.rank = 1;
@@ -180,10 +181,11 @@ TEST_CASE("missing channels do not spoil the metric") {
   const Frame frame = noisy_blocks(a);
   std::vector<float> weights(frame.y.size(), 1.0F);
   for (std::size_t m = 3; m < weights.size(); m += 20) weights[m] = m % 40 == 3 ? 0.0F : 0.3F;  // 5 %
-  recon::Plan plan = plan_of(recon::SolverKind::pdhg, 100);
+  recon::Plan plan = plan_of(recon::solver_named("pdhg"), 100);
   plan.rank = 96;
   const auto excess = [&](const std::vector<float>& w) {
-    const double best = solved(a, frame, plan_of(recon::SolverKind::admm, 20'000, recon::Precision::f64), w).objective;
+    const double best =
+        solved(a, frame, plan_of(recon::solver_named("admm"), 20'000, recon::Precision::f64), w).objective;
     return solved(a, frame, plan, w).objective / best - 1.0;
   };
   const double all = excess({}), some = excess(weights);
@@ -194,7 +196,7 @@ TEST_CASE("missing channels do not spoil the metric") {
 TEST_CASE("stored modes give the same frames, and only those of the same rank") {
   const recon::Response a = wide_eye();
   const Frame frame = noisy_blocks(a);
-  recon::Plan plan = plan_of(recon::SolverKind::pdhg, 10);
+  recon::Plan plan = plan_of(recon::solver_named("pdhg"), 10);
   plan.rank = 64;
   const auto first = recon::Reconstructor::create(a, frame.objective, plan).value();
   const recon::Factor wanted = recon::Reconstructor::wanted_factor(a, frame.objective, plan);

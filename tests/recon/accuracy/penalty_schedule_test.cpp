@@ -8,6 +8,7 @@
 
 #include "bench/eyes.hpp"
 #include "calib/nominal.hpp"
+#include "recon/solver_list.hpp"
 #include "sim/built_in_scenes.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
@@ -48,7 +49,7 @@ double mean_error(const Response& a, double rho) {
     for (const double v : y) power += v * v;
     const double sigma = std::sqrt(power / a.rows() / 1000.0);
     for (double& v : y) v += sigma * random.normal();
-    Plan plan = plan_of(SolverKind::admm, rho);
+    Plan plan = plan_of(solver_named("admm"), rho);
     plan.iterations = 22;
     const auto solver = Reconstructor::create(a, objective_of(BasisKind::identity, 4.0 * sigma), plan);
     REQUIRE(solver.has_value());
@@ -67,7 +68,7 @@ double mean_error(const Response& a, double rho) {
 
 TEST_CASE("admm in pixels goes down from rho, back to it, and ends there") {
   const PenaltyLevels dip =
-      penalty_levels(objective_of(BasisKind::identity, 0.1), plan_of(SolverKind::admm, 3.0), true, 64, true);
+      penalty_levels(objective_of(BasisKind::identity, 0.1), plan_of(solver_named("admm"), 3.0), true, 64, true);
   const auto least = std::min_element(dip.penalties.begin(), dip.penalties.end());
   CHECK(*least == doctest::Approx(1.0));
   CHECK(dip.penalties.front() == doctest::Approx(4.0));
@@ -78,7 +79,7 @@ TEST_CASE("admm in pixels goes down from rho, back to it, and ends there") {
 
 TEST_CASE("pdhg rises from rho to twice rho where lambda leaves it time") {
   const auto levels = [](double lambda, BasisKind basis = BasisKind::dct, int order = many_rows) {
-    return penalty_levels(objective_of(basis, lambda), plan_of(SolverKind::pdhg, 7.0), true, order, true).penalties;
+    return penalty_levels(objective_of(basis, lambda), plan_of(solver_named("pdhg"), 7.0), true, order, true).penalties;
   };
   for (const double lambda : {0.0, 0.2, 2.0}) {
     const auto rise = levels(lambda);
@@ -95,7 +96,8 @@ TEST_CASE("pdhg rises from rho to twice rho where lambda leaves it time") {
 
 TEST_CASE("pdhg comes down from above rho where no symmetry is left") {
   const auto levels = [](double lambda) {
-    return penalty_levels(objective_of(BasisKind::dct, lambda), plan_of(SolverKind::pdhg, 7.0), true, many_rows, false)
+    return penalty_levels(objective_of(BasisKind::dct, lambda), plan_of(solver_named("pdhg"), 7.0), true, many_rows,
+                          false)
         .penalties;
   };
   const auto fall = levels(0.2);
@@ -108,7 +110,7 @@ TEST_CASE("pdhg comes down from above rho where no symmetry is left") {
 }
 
 TEST_CASE("a rho that was asked for stays") {
-  for (const SolverKind solver : {SolverKind::admm, SolverKind::pdhg}) {
+  for (const SolverKind solver : {solver_named("admm"), solver_named("pdhg")}) {
     for (const BasisKind basis : {BasisKind::identity, BasisKind::dct}) {
       const PenaltyLevels levels =
           penalty_levels(objective_of(basis, 0.1), plan_of(solver, 5.0), false, many_rows, true);
@@ -119,7 +121,7 @@ TEST_CASE("a rho that was asked for stays") {
 
 TEST_CASE("the schedule follows the unit of the samples") {
   const auto rise = [](double unit) {
-    return penalty_levels(objective_of(BasisKind::dct, 3.0 * unit), plan_of(SolverKind::pdhg, 7.0 * unit), true,
+    return penalty_levels(objective_of(BasisKind::dct, 3.0 * unit), plan_of(solver_named("pdhg"), 7.0 * unit), true,
                           many_rows, true)
         .penalties;
   };

@@ -6,7 +6,7 @@
 #include "recon/option_names.hpp"
 #include "recon/reference/reference_solver.hpp"
 #include "recon/setup/quantised_response.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"
 
@@ -14,6 +14,7 @@ using namespace compueye;
 using namespace compueye::tests;
 using recon::BasisKind;
 using recon::OperatorKind;
+using recon::solver_named;
 using recon::SolverKind;
 
 namespace {
@@ -61,7 +62,7 @@ TEST_CASE("solvers with a rounded operator solve the problem of the rounded matr
       for (const BasisKind basis : {BasisKind::identity, BasisKind::dct, BasisKind::tv}) {
         CAPTURE(recon::name(basis));
         for (const SolverKind solver :
-             {SolverKind::admm, SolverKind::adm, SolverKind::fista, SolverKind::chambolle_pock}) {
+             {solver_named("admm"), solver_named("adm"), solver_named("fista"), solver_named("cp")}) {
           if (!recon::supports(solver, basis, recon::ConstraintKind::none)) continue;
           CAPTURE(recon::name(solver));
           check_solver(problem, applied, kind, solver, basis, y);

@@ -7,7 +7,7 @@
 
 #include "recon/option_names.hpp"
 #include "recon/reference/reference_solver.hpp"
-#include "recon/solver_table.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"
 
@@ -16,12 +16,13 @@ using namespace compueye::tests;
 using recon::BasisKind;
 using recon::ConstraintKind;
 using recon::Response;
+using recon::solver_named;
 using recon::SolverKind;
 
 namespace {
 
-constexpr std::array l1_solvers{SolverKind::admm, SolverKind::adm, SolverKind::fista, SolverKind::chambolle_pock,
-                                SolverKind::pdhg};
+const std::array l1_solvers{solver_named("admm"), solver_named("adm"), solver_named("fista"), solver_named("cp"),
+                            solver_named("pdhg")};
 
 struct Samples {
   std::vector<double> y;
@@ -86,14 +87,14 @@ bool check_against(const recon::reference::ReferenceResult& best, const SolverPr
   CHECK(frame.info.iterations == iterations);
   // Weak duality: the gap never promises more than is true.
   CHECK(frame.info.duality_gap >= reached - best.objective - 2e-6 * best.objective - 1e-7);
-  const bool first_order = kind == SolverKind::fista || kind == SolverKind::chambolle_pock || kind == SolverKind::pdhg;
+  const bool first_order = kind == solver_named("fista") || kind == solver_named("cp") || kind == solver_named("pdhg");
   const bool close = reached <= best.objective * (1.0 + 1e-4) + 1e-7;
   const bool settled = frame.info.health == recon::Health::converged;
   CHECK((settled || first_order));
   // A gap of 1e-3 is what counts as settled; total variation by pdhg can be that far off.
   const bool near = reached <= best.objective * (1.0 + 1e-3) + 1e-7;
   CHECK((near || !settled));
-  CHECK((close || !settled || (kind == SolverKind::pdhg && objective.basis == BasisKind::tv)));
+  CHECK((close || !settled || (kind == solver_named("pdhg") && objective.basis == BasisKind::tv)));
   if (!close) return false;
   CHECK(frame.info.duality_gap <= 5e-3 * best.objective + 1e-6);
   return true;
@@ -128,7 +129,7 @@ TEST_CASE("l1 solvers reach the reference's objective to 1e-4 on every kind of p
           ++unfinished;
           // Rows that differ by 300 are what a first-order method pays for; pdhg's one step for all differences is
           // slow at the end on random rows.
-          CHECK((problem.name == "scaled rows" || (kind == SolverKind::pdhg && basis.kind == BasisKind::tv)));
+          CHECK((problem.name == "scaled rows" || (kind == solver_named("pdhg") && basis.kind == BasisKind::tv)));
           CHECK(check_against(best, problem, objective, samples, kind, 100'000, recon::Precision::f64));
         }
       }
@@ -147,14 +148,14 @@ TEST_CASE("what goes with what is what the solvers can do") {
     for (const auto& constraint : recon::constraint_names()) {
       const bool pixels = basis.kind == BasisKind::identity, tv = basis.kind == BasisKind::tv;
       const bool none = constraint.kind == ConstraintKind::none;
-      CHECK(supports(SolverKind::admm, basis.kind, constraint.kind));
-      CHECK(supports(SolverKind::chambolle_pock, basis.kind, constraint.kind));
-      CHECK(supports(SolverKind::pdhg, basis.kind, constraint.kind));
-      CHECK(supports(SolverKind::adm, basis.kind, constraint.kind) == (pixels || (none && !tv)));
-      CHECK(supports(SolverKind::fista, basis.kind, constraint.kind) == (pixels || (none && !tv)));
-      CHECK(supports(SolverKind::omp, basis.kind, constraint.kind) == (none && !tv));
-      CHECK(supports(SolverKind::tsvd, basis.kind, constraint.kind) == (none && pixels));
-      CHECK(supports(SolverKind::tikhonov, basis.kind, constraint.kind) == (none && pixels));
+      CHECK(supports(solver_named("admm"), basis.kind, constraint.kind));
+      CHECK(supports(solver_named("cp"), basis.kind, constraint.kind));
+      CHECK(supports(solver_named("pdhg"), basis.kind, constraint.kind));
+      CHECK(supports(solver_named("adm"), basis.kind, constraint.kind) == (pixels || (none && !tv)));
+      CHECK(supports(solver_named("fista"), basis.kind, constraint.kind) == (pixels || (none && !tv)));
+      CHECK(supports(solver_named("omp"), basis.kind, constraint.kind) == (none && !tv));
+      CHECK(supports(solver_named("tsvd"), basis.kind, constraint.kind) == (none && pixels));
+      CHECK(supports(solver_named("tikhonov"), basis.kind, constraint.kind) == (none && pixels));
       ++pairs;
       for (const auto& solver : recon::solver_names()) {
         recon::Objective objective;
@@ -186,7 +187,7 @@ TEST_CASE("tikhonov is the closed form, in both precisions") {
     recon::Objective objective;
     objective.lambda = 0.07;
     recon::Plan plan;
-    plan.solver = recon::SolverKind::tikhonov;
+    plan.solver = recon::solver_named("tikhonov");
     plan.precision = precision;
     const auto solver = recon::Reconstructor::create(a, objective, plan);
     REQUIRE(solver.has_value());

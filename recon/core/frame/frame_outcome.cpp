@@ -1,0 +1,57 @@
+#include "recon/core/frame/frame_outcome.hpp"
+
+#include "recon/core/parts/square_root.hpp"
+#include "recon/core/parts/vector_sums.hpp"
+
+namespace compueye::recon::core {
+namespace {
+
+constexpr double converged_gap = 1e-3;
+constexpr double converged_step = 1e-6;
+
+}  // namespace
+
+template <class T>
+void deliver(const T* solution, bool usable, std::size_t n, FrameInfo& info, float* x) noexcept {
+  // A float32 x may overflow where a double solution did not; objectives overflow before either.
+  for (std::size_t k = 0; k < n; ++k) x[k] = usable ? static_cast<float>(solution[k]) : 0.0F;
+  if (usable && all_finite(x, n) && all_finite(&info.objective, 1)) return;
+  for (std::size_t k = 0; k < n; ++k) x[k] = 0.0F;
+  info.health = Health::invalid;
+  info.objective = info.residual = info.primal_residual = info.dual_residual = 0.0;
+}
+
+template <class T>
+void evaluate(const FrameSamples<T>& samples, const T* solution, double penalty, T* scratch, FrameInfo& info) noexcept {
+  const double squared = samples.squared_residual(solution, scratch);
+  info.residual = square_root(squared);
+  info.objective = 0.5 * squared + penalty;
+  info.channels_used = static_cast<int>(samples.channels_used());
+  info.channels_reweighted = static_cast<int>(samples.channels_reweighted());
+}
+
+template <class T>
+double l1_penalty(const FrameProblem<T>& problem, const T* coefficients) noexcept {
+  const double magnitudes = static_cast<double>(sum_of_magnitudes(coefficients, problem.psi.coefficients()));
+  return static_cast<double>(problem.lambda) * magnitudes;
+}
+
+template <class T>
+void judge_by_gap(const FrameProblem<T>& problem, double gap, FrameInfo& info) noexcept {
+  const double step = info.primal_residual > info.dual_residual ? info.primal_residual : info.dual_residual;
+  const bool settled = gap >= 0.0 ? gap <= converged_gap * info.objective : step < converged_step;
+  info.duality_gap = problem.measure_gap ? gap : -1.0;
+  info.iterations = problem.point.iterations;
+  info.health = settled ? Health::converged : Health::budget_used;
+}
+
+template void deliver(const float*, bool, std::size_t, FrameInfo&, float*) noexcept;
+template void deliver(const double*, bool, std::size_t, FrameInfo&, float*) noexcept;
+template void evaluate(const FrameSamples<float>&, const float*, double, float*, FrameInfo&) noexcept;
+template void evaluate(const FrameSamples<double>&, const double*, double, double*, FrameInfo&) noexcept;
+template double l1_penalty(const FrameProblem<float>&, const float*) noexcept;
+template double l1_penalty(const FrameProblem<double>&, const double*) noexcept;
+template void judge_by_gap(const FrameProblem<float>&, double, FrameInfo&) noexcept;
+template void judge_by_gap(const FrameProblem<double>&, double, FrameInfo&) noexcept;
+
+}  // namespace compueye::recon::core

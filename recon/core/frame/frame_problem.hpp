@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "recon/core/bases/basis.hpp"
+#include "recon/core/frame/frame_info.hpp"
+#include "recon/core/frame/metric.hpp"
+#include "recon/core/operators/linear_operator.hpp"
+#include "recon/core/parts/class_inverse.hpp"
+#include "recon/core/parts/crew.hpp"
+
+namespace compueye::recon::core {
+
+/// What stands for a bound that is not there: far beyond any picture, and its products stay within float32.
+inline constexpr double no_bound = 1e30;
+
+/// What a frame is solved with, set up once and only read afterwards: views of tables owned by the caller
+/// (recon::Reconstructor on a computer with a heap, constant arrays on a microcontroller).
+///
+///   min 1/2 ||W^(1/2)(A x - y)||^2 + lambda ||Psi x||_1   subject to lo <= x <= hi
+///
+/// A method adds its own parameters in a struct derived from this, beside its solver (core/solvers/). Such a struct has
+/// the name of its method, and fields(archive), which lists what it adds (core/frame/frozen_layout.hpp).
+template <class T>
+struct FrameProblem {
+  LinearOperator<T> a;                   ///< seeing rows only
+  const std::int32_t* seeing = nullptr;  ///< a.rows channel numbers, ascending
+  std::size_t channels = 0;              ///< M: length of y and of the weights
+  std::size_t max_reweighted = 0;        ///< how many weights may differ from one in a frame
+  std::size_t image_rows = 0;
+  std::size_t image_cols = 0;  ///< image_rows * image_cols = a.cols
+  Basis<T> psi;
+  Metric<T> metric;          ///< K0; the identity unless psi is tv
+  bool constrained = false;  ///< there is a lo or a hi
+  T lo = T(-no_bound);
+  T hi = T(no_bound);
+  T lambda = T(0);
+  bool bounded = false;  ///< min ||Psi x||_1 subject to ||W^(1/2)(A x - y)|| <= epsilon instead
+  T epsilon = T(0);
+  bool measure_gap = false;
+  OperatingPoint point;  ///< point.iterations = K
+  Crew crew = {};        ///< for the passes over pixels and coefficients; operator, bases and inverse have theirs
+
+  [[nodiscard]] std::size_t pixels() const noexcept { return a.cols; }
+};
+
+/// Of the methods whose quadratic step has a cached inverse (core/frame/weighted_step.hpp).
+template <class T>
+struct FactoredProblem : FrameProblem<T> {
+  ClassInverse<T> inverse;  ///< (A K0^-1 A' + rho I)^-1, order = a.rows
+  T rho = T(1);
+
+  template <class Archive>
+  void fields(Archive& archive) {
+    describe(inverse, archive);
+    archive.number(rho);
+  }
+};
+
+}  // namespace compueye::recon::core

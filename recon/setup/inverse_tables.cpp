@@ -1,0 +1,71 @@
+#include "recon/setup/inverse_tables.hpp"
+
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "recon/setup/mirror_symmetry.hpp"
+
+namespace compueye::recon {
+
+template <class T>
+core::ClassInverse<T> make_inverse(const ParityClasses& classes, const T* values, KeptTables& kept) {
+  core::ClassInverse<T> inverse;
+  inverse.order = static_cast<std::size_t>(classes.rows());
+  inverse.classes = classes.count();
+  const bool whole = classes.count() == 1;
+  std::vector<std::int32_t> index;
+  std::vector<T> share;
+  for (std::size_t c = 0; c < classes.count() && !whole; ++c) {
+    for (int m = 0; m < classes.rows(); ++m) {
+      index.push_back(classes.index(c, m));
+      share.push_back(static_cast<T>(classes.share(c, m)));
+    }
+  }
+  const std::int32_t* indices = kept.keep(std::move(index));
+  const T* shares = kept.keep(std::move(share));
+  for (std::size_t c = 0; c < classes.count(); ++c) {
+    auto& part = inverse.parts[c];
+    part.matrix = {static_cast<std::size_t>(classes.order(c)), values};
+    values += core::PackedSymmetric<T>::size(part.matrix.order);
+    if (whole) continue;
+    part.index = indices + c * inverse.order;
+    part.share = shares + c * inverse.order;
+  }
+  return inverse;
+}
+
+template <class T>
+hal::Result<void> fill_inverse(SetUp<T>& from, const ParityClasses& classes, core::FactoredProblem<T>& problem) {
+  if (from.stored && from.stored->values.size() != factor_size(classes)) {
+    return stale(*from.stored, from.plan, from.seeing.rows());
+  }
+  problem.rho = static_cast<T>(from.plan.rho);
+  const T* values = nullptr;
+  if constexpr (std::is_same_v<T, float>) {
+    from.factor.values = from.stored
+                             ? std::move(from.stored->values)
+                             : TRY(packed_inverse<T>(from.seeing, from.factor.metric, from.plan.rho, from.progress));
+    values = from.factor.values.data();
+  } else {
+    values = from.kept.keep(TRY(packed_inverse<T>(from.seeing, from.factor.metric, from.plan.rho, from.progress)));
+  }
+  problem.inverse = make_inverse(classes, values, from.kept);
+  problem.inverse.crew = from.crew;
+  return {};
+}
+
+template <class T>
+ParityClasses classes_of(const SetUp<T>& from) {
+  return ParityClasses(from.seeing.rows(), find_mirror_symmetry(from.seeing));
+}
+
+template core::ClassInverse<float> make_inverse(const ParityClasses&, const float*, KeptTables&);
+template core::ClassInverse<double> make_inverse(const ParityClasses&, const double*, KeptTables&);
+template hal::Result<void> fill_inverse(SetUp<float>&, const ParityClasses&, core::FactoredProblem<float>&);
+template hal::Result<void> fill_inverse(SetUp<double>&, const ParityClasses&, core::FactoredProblem<double>&);
+template ParityClasses classes_of(const SetUp<float>&);
+template ParityClasses classes_of(const SetUp<double>&);
+
+}  // namespace compueye::recon

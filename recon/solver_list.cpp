@@ -1,0 +1,57 @@
+#include "recon/solver_list.hpp"
+
+#include <array>
+#include <vector>
+
+namespace compueye::recon {
+
+// Each is defined by its file in recon/setup/solvers.
+extern const SolverRow admm, adm, chambolle_pock, fista, omp, pdhg, tikhonov, tsvd;
+extern const SolverRow adm_as_published;
+
+namespace {
+
+constexpr std::array<SolverKind, 8> to_choose{&admm, &adm, &chambolle_pock, &fista, &omp, &pdhg, &tikhonov, &tsvd};
+constexpr std::array<SolverKind, 1> for_show{&adm_as_published};
+
+}  // namespace
+
+std::span<const SolverKind> solvers() noexcept {
+  return to_choose;
+}
+
+SolverKind default_solver() noexcept {
+  return to_choose.front();
+}
+
+SolverKind solver_named(std::string_view name) noexcept {
+  for (const auto& list : {solvers(), std::span<const SolverKind>(for_show)}) {
+    for (const SolverKind solver : list) {
+      if (solver->name == name) return solver;
+    }
+  }
+  return nullptr;
+}
+
+bool supports(SolverKind solver, BasisKind basis, ConstraintKind constraint) noexcept {
+  return solver->takes(basis, constraint);
+}
+
+std::string names_of_solvers(const std::function<bool(const SolverRow&)>& wanted, std::string_view last) {
+  std::vector<std::string_view> names;
+  for (const SolverKind solver : solvers()) {
+    if (wanted(*solver)) names.push_back(solver->name);
+  }
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (k > 0) text += k + 1 < names.size() ? ", " : last;
+    text += names[k];
+  }
+  return text;
+}
+
+std::string solvers_for(BasisKind basis, ConstraintKind constraint) {
+  return names_of_solvers([&](const SolverRow& row) { return row.takes(basis, constraint); });
+}
+
+}  // namespace compueye::recon
