@@ -6,7 +6,6 @@
 #include <system_error>
 #include <type_traits>
 
-#include "firmware/text/table.hpp"
 #include "firmware/text/words.hpp"
 
 namespace compueye::firmware {
@@ -48,35 +47,8 @@ std::string text_of(const Json& object) {
 
 }  // namespace
 
-Value::Value(Figures figures) : data_(std::make_shared<const Figures>(std::move(figures))) {}
-
-Figures::Figures(std::initializer_list<Member> members) {
-  for (const Member& member : members) add(member.key, member.value);
-}
-
-Figures& Figures::add(std::string_view key, std::string label, std::string text, Value value) {
-  if (!text.empty()) line(std::move(label), std::move(text));
-  return add(key, std::move(value));
-}
-
-Figures& Figures::add(std::string_view key, Value value) {
-  members_.emplace_back(key, std::move(value));
-  return *this;
-}
-
-Figures& Figures::line(std::string label, std::string text) {
-  rows_.push_back({std::move(label), std::move(text)});
-  return *this;
-}
-
-std::string Figures::text() const {
-  Table table({{"figure", Align::left}, {"value", Align::left}});
-  for (const Row& row : rows_) table.add({row.label, row.text});
-  return table.text();
-}
-
-std::string Figures::json() const {
-  return text_of(json_of(*this));
+std::string json_text(const Figures& figures) {
+  return text_of(json_of(figures));
 }
 
 Figures figures_of(const hal::FrameAccount& account) {

@@ -74,9 +74,9 @@ class Session {
   /// failure after it as its member "error". Error io or no_space when standard output refuses it.
   [[nodiscard]] hal::Result<void> print(const std::string& text, std::string json = {});
   [[nodiscard]] hal::Result<void> print(const std::string& text, const Figures& figures) {
-    return print(text, figures.json());
+    return print(text, json_text(figures));
   }
-  [[nodiscard]] hal::Result<void> print(const Figures& figures) { return print(figures.text(), figures.json()); }
+  [[nodiscard]] hal::Result<void> print(const Figures& figures) { return print(figures.text(), json_text(figures)); }
   /// Ends the command: its failure as a sentence on stderr and, with --json, as an object on stdout. What main()
   /// returns: 0, 1 (failed) or 2 (wrong usage).
   [[nodiscard]] int end(hal::Result<void> done);

@@ -158,7 +158,7 @@ TEST_CASE("JSON output is valid whatever the figures hold") {
   figures.add("file", "bad \xff utf-8").add("none", std::optional<int>());
   figures.add("inner", Figures{{"yes", true}, {"below", -1}, {"above", std::numeric_limits<std::uint64_t>::max()}});
   figures.add("last", 1);
-  const std::string text = figures.json();
+  const std::string text = json_text(figures);
   CHECK(text.ends_with("}\n"));
   const Json back = Json::parse(text, nullptr, false);
   REQUIRE_FALSE(back.is_discarded());
@@ -179,7 +179,7 @@ TEST_CASE("a figure is said once, to people and to programs") {
   Figures figures;
   figures.add("rows", "rows", "1,600", 1600).add("only", "not shown").line("note", "not counted");
   CHECK(figures.text() == "figure  value\n------  -----------\nrows    1,600\nnote    not counted\n");
-  CHECK(Json::parse(figures.json()) == Json{{"rows", 1600}, {"only", "not shown"}});
+  CHECK(Json::parse(json_text(figures)) == Json{{"rows", 1600}, {"only", "not shown"}});
 }
 
 TEST_CASE("an account becomes JSON with every reason") {
@@ -187,18 +187,18 @@ TEST_CASE("an account becomes JSON with every reason") {
   account.produced = 10;
   account.delivered = 7;
   account.drops(hal::DropReason::superseded) = 2;
-  const Json json = Json::parse(figures_of(account).json());
+  const Json json = Json::parse(json_text(figures_of(account)));
   CHECK(json["produced"] == 10);
   CHECK(json["dropped"].size() == hal::drop_reason_count);
   CHECK(json["dropped"][std::string(hal::name(hal::DropReason::superseded))] == 2);
   CHECK(json["balanced"] == false);
   account.drops(hal::DropReason::stopped) = 1;
-  CHECK(Json::parse(figures_of(account).json())["balanced"] == true);
+  CHECK(Json::parse(json_text(figures_of(account)))["balanced"] == true);
 }
 
 TEST_CASE("an error becomes a member of what was reported before it") {
   const hal::Error error{hal::ErrorCode::stale, "f.eye", "made from another A"};
-  const Json json = Json::parse(with_error(Figures{{"frames", 3}}.json(), error));
+  const Json json = Json::parse(with_error(json_text(Figures{{"frames", 3}}), error));
   CHECK(json["frames"] == 3);
   CHECK(json["error"]["code"] == hal::name(hal::ErrorCode::stale));
   CHECK(json["error"]["place"] == "f.eye");

@@ -1,7 +1,5 @@
 #include "firmware/app/commands/devices.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -12,8 +10,6 @@
 
 #include "firmware/app/command.hpp"
 #include "firmware/eye/source_kinds.hpp"
-#include "firmware/text/number_text.hpp"
-#include "firmware/text/table.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -22,43 +18,53 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* simulated_firmware = "simulated";
-
-std::string firmware_of(const Board& board) {
-  return board.source.simulated() ? simulated_firmware : "-";
-}
-
-std::string serial_of(const Board& board) {
-  return board.source.serial.empty() ? "any" : board.source.serial;
-}
-
-std::string attached_text(const AttachedEyes& attached) {
-  Table table({{"attached", Align::left},
-               {"serial", Align::left},
-               {"firmware", Align::left},
-               {"ommatidia"},
-               {"bits"},
-               {"product", Align::left}});
-  std::string troubles;
-  for (const AttachedEye& eye : attached.eyes) {
-    if (!eye.description) {
-      table.add({eye.bus, visible_text(eye.serial), "-", "-", "-", visible_text(eye.product)});
-      troubles += "cannot be asked: " + visible_text(eye.description.error().text()) + "\n";
-      continue;
-    }
-    const hal::SourceDescription& d = *eye.description;
-    table.add({eye.bus, visible_text(d.serial), visible_text(d.firmware), std::to_string(d.channels),
-               std::to_string(d.bits), visible_text(eye.product)});
-  }
-  for (const std::string& note : attached.notes) troubles += "not looked at: " + visible_text(note) + "\n";
-  return (attached.eyes.empty() ? "no eye is attached on USB or HID\n" : table.text()) + troubles + "\n";
-}
-
 Figures report_of(const AttachedEye& eye) {
   Figures f{{"kind", eye.kind}, {"bus", eye.bus}, {"serial", eye.serial}, {"product", eye.product}};
   if (!eye.description) return f.add("error", Figures{{"error", figures_of(eye.description.error())}});
   f.add("firmware", eye.description->firmware).add("ommatidia", eye.description->channels);
   return f.add("bits", eye.description->bits);
+}
+
+Figures report_of(const ListedBoard& listed) {
+  if (!listed.board) return {{"error", figures_of(listed.board.error())}, {"board", listed.folder}};
+  const Board& b = *listed.board;
+  return {{"serial", b.source.serial},
+          {"bus", b.source.kind},
+          {"firmware", b.source.simulated() ? "simulated" : "-"},
+          {"ommatidia", b.eye.ommatidia()},
+          {"rows", b.eye.rows},
+          {"columns", b.eye.columns},
+          {"image_rows", b.object.rows},
+          {"image_columns", b.object.cols},
+          {"frame_rate_hz", b.source.frame_rate_hz},
+          {"name", b.name},
+          {"board", listed.folder}};
+}
+
+std::string attached_text(const Value::List& eyes) {
+  if (eyes.empty()) return "no eye is attached on USB or HID\n";
+  return table_of(eyes, {{"attached", "{bus}", Align::left},
+                         {"serial", "{serial}", Align::left},
+                         {"firmware", "{firmware}", Align::left},
+                         {"ommatidia", "{ommatidia}"},
+                         {"bits", "{bits}"},
+                         {"product", "{product}", Align::left}});
+}
+
+std::string boards_text(const std::string& boards, const Value::List& devices) {
+  if (devices.empty()) return "no board that can be read in '" + boards + "'\n";
+  return table_of(devices, {{"board's serial", "{serial:|any}", Align::left},
+                            {"bus", "{bus}", Align::left},
+                            {"firmware", "{firmware}", Align::left},
+                            {"ommatidia", "{rows} x {columns}"},
+                            {"pixels", "{image_rows} x {image_columns}"},
+                            {"rate Hz", "{frame_rate_hz:4}"},
+                            {"board", "{board}", Align::left}});
+}
+
+/// A line a trouble: what was tried, and what came of it.
+std::string line(const char* what, const std::string& why) {
+  return what + visible_text(why) + "\n";
 }
 
 }  // namespace
@@ -81,58 +87,27 @@ hal::Result<std::vector<ListedBoard>> list_boards(const std::string& boards) {
   return listed;
 }
 
-std::string devices_text(const AttachedEyes& attached, const std::string& boards,
-                         const std::vector<ListedBoard>& listed) {
-  Table table({{"board's serial", Align::left},
-               {"bus", Align::left},
-               {"firmware", Align::left},
-               {"ommatidia"},
-               {"pixels"},
-               {"rate Hz"},
-               {"board", Align::left}});
-  std::string broken;
-  for (const ListedBoard& each : listed) {
-    if (!each.board) {
-      broken += "broken: " + visible_text(each.board.error().text()) + "\n";
-      continue;
-    }
-    const Board& b = *each.board;
-    table.add({serial_of(b), b.source.kind, firmware_of(b), fmt::format("{} x {}", b.eye.rows, b.eye.columns),
-               fmt::format("{} x {}", b.object.rows, b.object.cols), significant(b.source.frame_rate_hz, 4),
-               each.folder});
+Figures devices_report(const AttachedEyes& attached, const std::string& boards,
+                       const std::vector<ListedBoard>& listed) {
+  Value::List eyes, devices, broken;
+  std::string troubles, defects;
+  for (const AttachedEye& eye : attached.eyes) {
+    eyes.push_back(report_of(eye));
+    if (!eye.description) troubles += line("cannot be asked: ", eye.description.error().text());
   }
-  std::string text = table.size() > 0 ? table.text() : "no board that can be read in '" + boards + "'\n";
-  if (!broken.empty()) text += "\n" + broken;
-  return attached_text(attached) + text;
-}
-
-Figures devices_figures(const AttachedEyes& attached, const std::vector<ListedBoard>& listed) {
-  Value::List devices, broken, eyes;
+  for (const std::string& note : attached.notes) troubles += line("not looked at: ", note);
   for (const ListedBoard& each : listed) {
-    if (!each.board) {
-      broken.push_back(Figures{{"error", figures_of(each.board.error())}, {"board", each.folder}});
-      continue;
-    }
-    const Board& b = *each.board;
-    devices.push_back(Figures{{"serial", b.source.serial},
-                              {"bus", b.source.kind},
-                              {"firmware", firmware_of(b)},
-                              {"ommatidia", b.eye.ommatidia()},
-                              {"rows", b.eye.rows},
-                              {"columns", b.eye.columns},
-                              {"image_rows", b.object.rows},
-                              {"image_columns", b.object.cols},
-                              {"frame_rate_hz", b.source.frame_rate_hz},
-                              {"name", b.name},
-                              {"board", each.folder}});
+    (each.board ? devices : broken).push_back(report_of(each));
+    if (!each.board) defects += line("broken: ", each.board.error().text());
   }
-  for (const AttachedEye& eye : attached.eyes) eyes.push_back(report_of(eye));
-  return {{"attached", std::move(eyes)},
-          {"notes", attached.notes},
-          {"devices", std::move(devices)},
-          {"broken", std::move(broken)},
-          {"back_ends", Value::List(source_kind_names.begin(), source_kind_names.end())},
-          {"back_ends_not_built_in", Value::List{"spi"}}};
+  Figures f{{"attached", eyes},
+            {"notes", attached.notes},
+            {"devices", devices},
+            {"broken", broken},
+            {"back_ends", Value::List(source_kind_names.begin(), source_kind_names.end())},
+            {"back_ends_not_built_in", Value::List{"spi"}}};
+  f.say(attached_text(eyes) + troubles + "\n" + boards_text(boards, devices));
+  return defects.empty() ? f : f.say("\n" + defects);
 }
 
 namespace {
@@ -144,7 +119,7 @@ struct DevicesRequest {
 hal::Result<void> list_devices(const DevicesRequest& request, Session& session) {
   const auto listed = TRY(list_boards(request.boards));
   const AttachedEyes attached = list_attached_eyes(session.clock());
-  return session.print(devices_text(attached, request.boards, listed), devices_figures(attached, listed));
+  return session.print(devices_report(attached, request.boards, listed));
 }
 
 Action declare(OptionList& options) {

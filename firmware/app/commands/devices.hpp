@@ -19,8 +19,8 @@ struct ListedBoard {
 /// Every folder below `boards` that holds a board.toml, by name. Errors: not_found, io.
 [[nodiscard]] hal::Result<std::vector<ListedBoard>> list_boards(const std::string& boards);
 
-[[nodiscard]] std::string devices_text(const AttachedEyes& attached, const std::string& boards,
-                                       const std::vector<ListedBoard>& listed);
-[[nodiscard]] Figures devices_figures(const AttachedEyes& attached, const std::vector<ListedBoard>& listed);
+/// What is attached, and the boards below `boards`.
+[[nodiscard]] Figures devices_report(const AttachedEyes& attached, const std::string& boards,
+                                     const std::vector<ListedBoard>& listed);
 
 }  // namespace compueye::firmware

@@ -13,8 +13,6 @@
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/source_list.hpp"
-#include "firmware/text/number_text.hpp"
-#include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -109,33 +107,23 @@ Result<Recorded> read_on(RecordingSource& source, const Goal& goal, Session& ses
   return recorded;
 }
 
-std::string text_of(const Board& board, const std::string& scene, const RecordingSource& source,
-                    const Recorded& recorded) {
-  std::string text =
-      fmt::format("{}: {} frames of {} channels of {} in front of {}, {} in {}; {}\n", visible_text(source.path()),
-                  source.recorded(), source.describe().channels, board.name, visible_text(scene), bytes(source.bytes()),
-                  duration(recorded.seconds), recorded.ending);
-  if (recorded.account.total_dropped() > 0) {
-    text += fmt::format("{} frames were dropped before they reached the recorder\n", recorded.account.total_dropped());
-  }
-  if (source.unrecorded() > 0) {
-    text += fmt::format("{} frames are not in the file, which did not keep up; it says so\n", source.unrecorded());
-  }
-  return text;
-}
-
 Figures report_of(const Board& board, const std::string& scene, const RecordingSource& source,
                   const Recorded& recorded) {
-  return {{"file", source.path()},
-          {"board", board.name},
-          {"scene", scene},
-          {"channels", source.describe().channels},
-          {"frames_recorded", source.recorded()},
-          {"frames_unrecorded", source.unrecorded()},
-          {"file_bytes", source.bytes()},
-          {"wall_s", recorded.seconds},
-          {"ending", recorded.ending},
-          {"frames", figures_of(recorded.account)}};
+  Figures f{{"file", source.path()},
+            {"board", board.name},
+            {"scene", scene},
+            {"channels", source.describe().channels},
+            {"frames_recorded", source.recorded()},
+            {"frames_unrecorded", source.unrecorded()},
+            {"file_bytes", source.bytes()},
+            {"wall_s", recorded.seconds},
+            {"ending", recorded.ending},
+            {"frames", figures_of(recorded.account)}};
+  return f.tell(
+      "{file}: {frames_recorded} frames of {channels} channels of {board} in front of {scene}, {file_bytes:bytes} in "
+      "{wall_s:duration}; {ending}\n"
+      "[{frames.dropped:sum} frames were dropped before they reached the recorder\n]"
+      "[{frames_unrecorded} frames are not in the file, which did not keep up; it says so\n]");
 }
 
 /// Records a board's eye until there are enough frames, the time is over, the user stops it or the file fails; what was
@@ -157,7 +145,7 @@ Result<void> record(const RecordRequest& o, Session& session) {
   const auto source = TRY(RecordingSource::create(std::move(settings), *eye, session.clock()));
   TRY(source->start());
   const Recorded recorded = TRY(read_on(*source, goal_of(o, board), session));
-  TRY(session.print(text_of(board, scene_name, *source, recorded), report_of(board, scene_name, *source, recorded)));
+  TRY(session.print(report_of(board, scene_name, *source, recorded)));
   if (const auto& error = source->error()) return tl::unexpected(*error);
   return {};
 }

@@ -13,7 +13,6 @@
 
 #include "drivers/recording/recording_reader.hpp"
 #include "firmware/app/command.hpp"
-#include "firmware/text/number_text.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -36,14 +35,10 @@ class RecordingSummary {
 
   void add(const recording::RecordedFrame& frame);
 
-  /// For people: a few lines. `reader` has been read to its end.
-  [[nodiscard]] std::string text(const recording::RecordingReader& reader) const;
-  /// For machines: every figure.
-  [[nodiscard]] Figures figures(const recording::RecordingReader& reader) const;
+  /// `reader` has been read to its end.
+  [[nodiscard]] Figures report(const recording::RecordingReader& reader) const;
 
  private:
-  [[nodiscard]] std::string frames_text(const recording::RecordingReader& reader) const;
-
   std::uint64_t frames_ = 0;
   std::uint64_t next_frame_ = 0;
   std::uint64_t gaps_ = 0;
@@ -68,20 +63,6 @@ std::string one_line(std::string settings) {
   return visible_text(text);
 }
 
-std::string damage_text(const RecordingDamage& damage) {
-  std::string text;
-  if (damage.stretches > 0) {
-    text += fmt::format("damaged: {} bytes in {} place{}, the first at byte {}; {} frame{} lost there\n", damage.bytes,
-                        damage.stretches, damage.stretches == 1 ? "" : "s", damage.first_at, damage.blocks,
-                        damage.blocks == 1 ? "" : "s");
-  }
-  if (damage.torn_bytes > 0) {
-    text +=
-        fmt::format("torn tail: {} bytes of an unfinished block from byte {} on\n", damage.torn_bytes, damage.torn_at);
-  }
-  return text;
-}
-
 void RecordingSummary::add(const recording::RecordedFrame& recorded) {
   const hal::SampleBlock& block = recorded.block;
   if (block.frame > next_frame_) {
@@ -101,48 +82,7 @@ void RecordingSummary::add(const recording::RecordedFrame& recorded) {
   last_arrival_ns_ = recorded.arrival_ns;
 }
 
-std::string RecordingSummary::frames_text(const RecordingReader& reader) const {
-  const hal::FrameAccount account = reader.account();
-  std::string text = fmt::format("frames: {} produced = {} recorded + {} dropped", account.produced, account.delivered,
-                                 account.total_dropped());
-  std::string_view before = " (";
-  for (std::size_t r = 0; r < hal::drop_reason_count; ++r) {
-    if (account.dropped[r] == 0) continue;
-    text += fmt::format("{}{} {}", before, account.dropped[r], name(static_cast<hal::DropReason>(r)));
-    before = ", ";
-  }
-  if (before == ", ") text += ")";
-  if (reader.unrecorded() > 0) text += fmt::format("; {} of them were too much for the recorder", reader.unrecorded());
-  text += "\n";
-  if (gaps_ > 0) {
-    text += fmt::format("gaps: {} with {} frames missing, before frame", gaps_, missing_);
-    for (const FrameGap& gap : first_gaps_) text += fmt::format(" {} ({})", gap.before_frame, gap.frames);
-    text += gaps_ > first_gaps_.size() ? " ...\n" : "\n";
-  }
-  return text;
-}
-
-std::string RecordingSummary::text(const RecordingReader& reader) const {
-  const hal::SourceDescription& s = reader.header().source;
-  const double seconds = static_cast<double>(last_arrival_ns_ - first_arrival_ns_) / 1e9;
-  std::string text = fmt::format("{}: {}, recorded {}\n", visible_text(reader.place()), bytes(reader.file_bytes()),
-                                 utc(reader.header().began_unix_ns));
-  text += fmt::format("source: {} {}, firmware {}; {} channels of {} bits, {}\n", visible_text(s.backend),
-                      visible_text(s.serial), visible_text(s.firmware), s.channels, s.bits,
-                      s.frame_rate_hz > 0.0 ? significant(s.frame_rate_hz, 6) + " frames a second" : "unpaced");
-  if (!reader.header().settings.empty()) text += "settings: " + one_line(reader.header().settings) + "\n";
-  text += frames_text(reader);
-  text += fmt::format(
-      "spread over {}; {} saturated, {} dark, {} with overrun flag, {} with an untrusted time; {} invalid "
-      "samples; {} configuration{}\n",
-      duration(seconds), saturated_, dark_, overrun_, untrusted_times_, invalid_samples_, configurations_,
-      configurations_ == 1 ? "" : "s");
-  text += damage_text(reader.damage());
-  const auto& end = reader.end();
-  return text + (end ? fmt::format("ended: {}\n", name(end->ending)) : "cut off: there is no end block\n");
-}
-
-Figures RecordingSummary::figures(const RecordingReader& reader) const {
+Figures RecordingSummary::report(const RecordingReader& reader) const {
   const hal::SourceDescription& s = reader.header().source;
   const RecordingDamage& damage = reader.damage();
   Value::List gaps;
@@ -151,33 +91,53 @@ Figures RecordingSummary::figures(const RecordingReader& reader) const {
   }
   Value end;
   if (reader.end()) end = Figures{{"why", name(reader.end()->ending)}, {"at_ns", reader.end()->at_ns}};
-  return {{"file", reader.place()},
-          {"file_bytes", reader.file_bytes()},
-          {"began_unix_ns", reader.header().began_unix_ns},
-          {"source", Figures{{"backend", s.backend},
-                             {"serial", s.serial},
-                             {"firmware", s.firmware},
-                             {"channels", s.channels},
-                             {"bits", s.bits},
-                             {"frame_rate_hz", s.frame_rate_hz}}},
-          {"settings", reader.header().settings},
-          {"frames", figures_of(reader.account())},
-          {"unrecorded", reader.unrecorded()},
-          {"gaps", Figures{{"count", gaps_}, {"missing_frames", missing_}, {"first", std::move(gaps)}}},
-          {"span_ns", last_arrival_ns_ - first_arrival_ns_},
-          {"saturated_frames", saturated_},
-          {"dark_frames", dark_},
-          {"overrun_flags", overrun_},
-          {"untrusted_times", untrusted_times_},
-          {"invalid_samples", invalid_samples_},
-          {"configurations", configurations_},
-          {"damage", Figures{{"places", damage.stretches},
-                             {"bytes", damage.bytes},
-                             {"first_at_byte", damage.stretches > 0 ? Value(damage.first_at) : Value()},
-                             {"frames", damage.blocks}}},
-          {"torn_tail",
-           Figures{{"bytes", damage.torn_bytes}, {"at_byte", damage.torn_bytes > 0 ? Value(damage.torn_at) : Value()}}},
-          {"end", std::move(end)}};
+  Figures f{{"file", reader.place()},
+            {"file_bytes", reader.file_bytes()},
+            {"began_unix_ns", reader.header().began_unix_ns},
+            {"source", Figures{{"backend", s.backend},
+                               {"serial", s.serial},
+                               {"firmware", s.firmware},
+                               {"channels", s.channels},
+                               {"bits", s.bits},
+                               {"frame_rate_hz", s.frame_rate_hz}}},
+            {"settings", reader.header().settings},
+            {"frames", figures_of(reader.account())},
+            {"unrecorded", reader.unrecorded()},
+            {"gaps", Figures{{"count", gaps_}, {"missing_frames", missing_}, {"first", std::move(gaps)}}},
+            {"span_ns", last_arrival_ns_ - first_arrival_ns_},
+            {"saturated_frames", saturated_},
+            {"dark_frames", dark_},
+            {"overrun_flags", overrun_},
+            {"untrusted_times", untrusted_times_},
+            {"invalid_samples", invalid_samples_},
+            {"configurations", configurations_},
+            {"damage", Figures{{"places", damage.stretches},
+                               {"bytes", damage.bytes},
+                               {"first_at_byte", damage.stretches > 0 ? Value(damage.first_at) : Value()},
+                               {"frames", damage.blocks}}},
+            {"torn_tail", Figures{{"bytes", damage.torn_bytes},
+                                  {"at_byte", damage.torn_bytes > 0 ? Value(damage.torn_at) : Value()}}},
+            {"end", std::move(end)}};
+  f.tell("{file}: {file_bytes:bytes}, recorded ").say(utc(reader.header().began_unix_ns) + "\n");
+  f.tell(
+      "source: {source.backend} {source.serial}, firmware {source.firmware}; {source.channels} channels of "
+      "{source.bits} bits, ");
+  f.tell(s.frame_rate_hz > 0.0 ? "{source.frame_rate_hz:6} frames a second\n" : "unpaced\n");
+  if (!reader.header().settings.empty()) f.say("settings: " + one_line(reader.header().settings) + "\n");
+  f.tell(
+      "frames: {frames.produced} produced = {frames.delivered} recorded + {frames.dropped:sum} dropped"
+      "[ ({frames.dropped})][; {unrecorded} of them were too much for the recorder]\n"
+      "[gaps: {gaps.count} with {gaps.missing_frames} frames missing, before frame]");
+  for (const FrameGap& gap : first_gaps_) f.say(fmt::format(" {} ({})", gap.before_frame, gap.frames));
+  if (gaps_ > 0) f.say(gaps_ > first_gaps_.size() ? " ...\n" : "\n");
+  f.tell(
+      "spread over {span_ns:ns}; {saturated_frames} saturated, {dark_frames} dark, {overrun_flags} with overrun "
+      "flag, {untrusted_times} with an untrusted time; {invalid_samples} invalid samples; "
+      "{configurations:# configuration}\n"
+      "[damaged: {damage.bytes} bytes in {damage.places:# place}, the first at byte {damage.first_at_byte}; "
+      "{damage.frames:# frame} lost there\n]"
+      "[torn tail: {torn_tail.bytes} bytes of an unfinished block from byte {torn_tail.at_byte} on\n]");
+  return f.tell(reader.end() ? "ended: {end.why}\n" : "cut off: there is no end block\n");
 }
 
 struct ReplayRequest {
@@ -197,7 +157,7 @@ hal::Result<void> replay(const ReplayRequest& request, Session& session) {
     progress("reading", static_cast<double>(reader.position()), static_cast<double>(reader.file_bytes()));
   }
   session.end_progress();
-  return session.print(summary.text(reader), summary.figures(reader));
+  return session.print(summary.report(reader));
 }
 
 Action declare(OptionList& options) {

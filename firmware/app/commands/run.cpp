@@ -283,7 +283,7 @@ Result<void> BoardRun::write_sheet() {
 }
 
 Result<void> BoardRun::print() {
-  const std::string json = report_figures(report_).json();
+  const std::string json = json_text(report_figures(report_));
   if (!options_.report.empty()) TRY(write_file_atomically(options_.report, std::as_bytes(std::span(json))));
   if (options_.table.empty()) return session_.print(report_text(report_), json);
   return session_.print((options_.table == "both" ? table_header() : std::string()) + table_row(report_));

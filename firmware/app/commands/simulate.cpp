@@ -55,33 +55,34 @@ Result<void> check(const SimulateRequest& o) {
               "is missing: name the .npy file for the samples, for example --out y.npy");
 }
 
-struct Effect {
-  std::string name;
-  bool on = false;
-  std::string what;
+/// What the simulated eye does to the light, on or off: for programs, and as a table.
+class Effects {
+ public:
+  Effects(const Board& board, const sim::Scene& scene, const SimulateRequest& o);
+
+  Value::List list;
+  Table table{{{"effect", Align::left}, {"", Align::left}, {"", Align::left}}};
+
+ private:
+  void add(const char* name, bool on, const std::string& what) {
+    list.push_back(Figures{{"name", name}, {"on", on}, {"what", what}});
+    table.add({name, on ? "on" : "off", on ? what : ""});
+  }
 };
 
-std::vector<Effect> effects_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
+Effects::Effects(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
   const hal::SensorSettings& s = board.sensor;
   const bool sensor = !o.noise_free || o.codes;
   const bool away = scene.distance_mm && *scene.distance_mm != board.object.distance_mm;
-  return {
-      {"acceptance cone", true, "flat top, light integrated below pixel size"},
-      {"scene off the object plane", away,
-       away ? significant(*scene.distance_mm, 4) + " mm instead of " + significant(board.object.distance_mm, 4) : ""},
-      {"dark level", sensor && s.dark_level_lsb > 0.0,
-       significant(s.dark_level_lsb, 4) + " LSB" + (o.codes ? "" : ", taken out again")},
-      {"read noise", !o.noise_free && s.read_noise_lsb > 0.0, significant(s.read_noise_lsb, 4) + " LSB"},
-      {"quantisation", sensor, fmt::format("{} bits, one LSB is {} of a white pixel", s.bits, significant(s.lsb(), 4))},
-      {"dead channels", !s.dead.empty(), fmt::format("{}", s.dead.size())},
-      {"lost frames", false, ""},
-  };
-}
-
-std::string table_of(const std::vector<Effect>& effects) {
-  Table table({{"effect", Align::left}, {"", Align::left}, {"", Align::left}});
-  for (const Effect& effect : effects) table.add({effect.name, effect.on ? "on" : "off", effect.on ? effect.what : ""});
-  return table.text();
+  add("acceptance cone", true, "flat top, light integrated below pixel size");
+  add("scene off the object plane", away,
+      away ? significant(*scene.distance_mm, 4) + " mm instead of " + significant(board.object.distance_mm, 4) : "");
+  add("dark level", sensor && s.dark_level_lsb > 0.0,
+      significant(s.dark_level_lsb, 4) + " LSB" + (o.codes ? "" : ", taken out again"));
+  add("read noise", !o.noise_free && s.read_noise_lsb > 0.0, significant(s.read_noise_lsb, 4) + " LSB");
+  add("quantisation", sensor, fmt::format("{} bits, one LSB is {} of a white pixel", s.bits, significant(s.lsb(), 4)));
+  add("dead channels", !s.dead.empty(), fmt::format("{}", s.dead.size()));
+  add("lost frames", false, "");
 }
 
 /// All frames after each other, M values each.
@@ -138,40 +139,28 @@ Result<void> write_truth(const Board& board, const sim::Scene& scene, const Simu
 }
 
 Figures report_of(const Board& board, const sim::Scene& scene, const Samples& samples, const SimulateRequest& o) {
-  Value::List effects;
-  for (const Effect& e : effects_of(board, scene, o)) {
-    effects.push_back(Figures{{"name", e.name}, {"on", e.on}, {"what", e.what}});
-  }
-  return {{"board", board.name},
-          {"scene", scene.name},
-          {"frames", o.frames},
-          {"channels", board.eye.ommatidia()},
-          {"seed", o.seed},
-          {"distance_mm", board.object.distance_mm},
-          {"unit", o.codes ? "code" : "fully seen white pixel"},
-          {"lsb", board.sensor.lsb()},
-          {"noise_sigma", o.noise_free ? 0.0 : board.sensor.noise_sigma()},
-          {"dead_channels", board.sensor.dead.size()},
-          {"saturated_frames", samples.saturated_frames},
-          {"effects", std::move(effects)},
-          {"samples_file", o.out},
-          {"truth_file", o.truth}};
-}
-
-std::string text_of(const Board& board, const sim::Scene& scene, const Samples& samples, const SimulateRequest& o) {
-  std::string text;
-  if (o.explain) text += table_of(effects_of(board, scene, o));
+  const Effects effects(board, scene, o);
+  Figures f{{"board", board.name},
+            {"scene", scene.name},
+            {"frames", o.frames},
+            {"channels", board.eye.ommatidia()},
+            {"seed", o.seed},
+            {"distance_mm", board.object.distance_mm},
+            {"unit", o.codes ? "code" : "fully seen white pixel"},
+            {"lsb", board.sensor.lsb()},
+            {"noise_sigma", o.noise_free ? 0.0 : board.sensor.noise_sigma()},
+            {"dead_channels", board.sensor.dead.size()},
+            {"saturated_frames", samples.saturated_frames},
+            {"effects", effects.list},
+            {"samples_file", o.out},
+            {"truth_file", o.truth}};
+  if (o.explain) f.say(effects.table.text());
   if (!o.out.empty()) {
-    text += fmt::format("{}: {} frame{} of {} samples of {} in front of {}\n", o.out, o.frames,
-                        o.frames == 1 ? "" : "s", board.eye.ommatidia(), board.name, scene.name);
+    f.tell("{samples_file}: {frames:# frame} of {channels} samples of {board} in front of {scene}\n");
   }
-  if (samples.saturated_frames > 0)
-    text += fmt::format("{} frames have saturated channels\n", samples.saturated_frames);
-  if (!board.sensor.dead.empty()) {
-    text += fmt::format("{} dead channels are NaN; --weights writes the weights that leave them out\n",
-                        board.sensor.dead.size());
-  }
-  return text;
+  return f.tell(
+      "[{saturated_frames} frames have saturated channels\n]"
+      "[{dead_channels} dead channels are NaN; --weights writes the weights that leave them out\n]");
 }
 
 /// Writes the samples of a board's simulated eye: float32, (M,) for one frame and (frames, M) for more, by ommatidium,
@@ -185,7 +174,7 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
   const Samples samples = TRY(take(board, scene, request));
   TRY(write(samples, board, request));
   TRY(write_truth(board, scene, request));
-  return session.print(text_of(board, scene, samples, request), report_of(board, scene, samples, request));
+  return session.print(report_of(board, scene, samples, request));
 }
 
 Action declare(OptionList& options) {

@@ -82,7 +82,8 @@ TEST_CASE("program: devices lists what is attached, with what the eyes say of th
   hal::MonotonicClock clock;
   const firmware::AttachedEyes attached = firmware::list_attached_eyes(clock);
   CHECK(attached.notes.empty());
-  const Json json = Json::parse(firmware::devices_figures(attached, {}).json());
+  const firmware::Figures report = firmware::devices_report(attached, "boards", {});
+  const Json json = Json::parse(firmware::json_text(report));
   REQUIRE(json["attached"].size() == 2);
   for (std::size_t i = 0; i < 2; ++i) {
     const Json& found = json["attached"][i];
@@ -94,7 +95,7 @@ TEST_CASE("program: devices lists what is attached, with what the eyes say of th
     CHECK(found["ommatidia"] == channels);
     CHECK(found["bits"] == (i == 0 ? 16 : 12));
   }
-  const std::string text = firmware::devices_text(attached, "boards", {});
+  const std::string text = report.text();
   CHECK(text.find("CE-USB") != std::string::npos);
   CHECK(text.find("hidraw") != std::string::npos);
 }

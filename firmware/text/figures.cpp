@@ -1,0 +1,186 @@
+#include "firmware/text/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+
+#include "firmware/text/number_text.hpp"
+#include "firmware/text/words.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using Inner = std::shared_ptr<const Figures>;
+
+double number_of(const Value& value) {
+  return std::visit(
+      [](const auto& held) {
+        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(held)>>) return static_cast<double>(held);
+        return 0.0;
+      },
+      value.data());
+}
+
+std::string text_of(const Value& value) {
+  return std::visit(
+      [](const auto& held) -> std::string {
+        using Held = std::decay_t<decltype(held)>;
+        std::string text;
+        const auto append = [&](const std::string& each) { text += (text.empty() ? "" : ", ") + each; };
+        if constexpr (std::is_same_v<Held, Value::List>) {
+          for (const Value& each : held) append(text_of(each));
+        } else if constexpr (std::is_same_v<Held, Inner>) {
+          for (const auto& [key, each] : held->members()) {
+            if (!each.says_nothing()) append(text_of(each) + ' ' + key);
+          }
+        } else if constexpr (std::is_same_v<Held, std::string>) {
+          text = visible_text(held);
+        } else if constexpr (std::is_same_v<Held, double>) {
+          text = fmt::format("{:g}", held);
+        } else if constexpr (!std::is_same_v<Held, std::monostate>) {
+          text = fmt::format("{}", held);
+        }
+        return text;
+      },
+      value.data());
+}
+
+double sum_of(const Value& value) {
+  double sum = 0.0;
+  if (const auto* inner = std::get_if<Inner>(&value.data())) {
+    for (const auto& [key, each] : (*inner)->members()) sum += number_of(each);
+  }
+  return sum;
+}
+
+std::string in_form(const Value& value, std::string_view form) {
+  const double number = number_of(value);
+  if (form.empty()) return text_of(value);
+  if (form == ",") return grouped(static_cast<std::int64_t>(number));
+  if (form == "bytes") return bytes(static_cast<std::uint64_t>(number));
+  if (form == "duration") return duration(number);
+  if (form == "ns") return duration(number / 1e9);
+  if (form == "sum") return fmt::format("{:.0f}", sum_of(value));
+  if (form.front() == '#') return text_of(value) + std::string(form.substr(1)) + (number == 1.0 ? "" : "s");
+  if (const std::size_t bar = form.find('|'); bar != std::string_view::npos) {
+    if (value.says_nothing()) return std::string(form.substr(bar + 1));
+    return bar == 0 ? text_of(value) : std::string(form.substr(0, bar));
+  }
+  int digits = 0;
+  const bool decimals = form.front() == '.';
+  std::from_chars(form.data() + (decimals ? 1 : 0), form.data() + form.size(), digits);
+  return decimals ? fixed(number, digits) : significant(number, digits);
+}
+
+}  // namespace
+
+Value::Value(Figures figures) : data_(std::make_shared<const Figures>(std::move(figures))) {}
+
+bool Value::says_nothing() const {
+  return std::visit(
+      [](const auto& held) {
+        using Type = std::decay_t<decltype(held)>;
+        if constexpr (std::is_same_v<Type, std::monostate>) {
+          return true;
+        } else if constexpr (std::is_same_v<Type, Inner>) {
+          return std::all_of(held->members().begin(), held->members().end(),
+                             [](const auto& member) { return member.second.says_nothing(); });
+        } else if constexpr (std::is_arithmetic_v<Type>) {
+          return held == Type{};
+        } else {
+          return held.empty();
+        }
+      },
+      data_);
+}
+
+Figures::Figures(std::initializer_list<Member> members) {
+  for (const Member& member : members) add(member.key, member.value);
+}
+
+Figures& Figures::add(std::string_view key, std::string label, std::string text, Value value) {
+  if (!text.empty()) line(std::move(label), std::move(text));
+  return add(key, std::move(value));
+}
+
+Figures& Figures::add(std::string_view key, Value value) {
+  members_.emplace_back(key, std::move(value));
+  return *this;
+}
+
+Figures& Figures::line(std::string label, std::string text) {
+  rows_.push_back({std::move(label), std::move(text)});
+  return *this;
+}
+
+Figures& Figures::tell(std::string_view sentence) {
+  return say(this->sentence(sentence));
+}
+
+Figures& Figures::say(std::string_view text) {
+  told_ += text;
+  return *this;
+}
+
+const Value* Figures::find(std::string_view path) const {
+  const std::size_t dot = path.find('.');
+  const auto at = std::find_if(members_.begin(), members_.end(),
+                               [key = path.substr(0, dot)](const auto& member) { return member.first == key; });
+  if (at == members_.end()) return nullptr;
+  if (dot == std::string_view::npos) return &at->second;
+  const auto* inner = std::get_if<Inner>(&at->second.data());
+  return inner == nullptr ? nullptr : (*inner)->find(path.substr(dot + 1));
+}
+
+std::string Figures::sentence(std::string_view sentence, std::string_view missing) const {
+  std::string text;
+  std::size_t part = 0;  // where the part in brackets begins
+  bool says_something = false;
+  for (std::size_t at = 0; at < sentence.size(); ++at) {
+    const char c = sentence[at];
+    if (c == '[') {
+      part = text.size();
+      says_something = false;
+    } else if (c == ']') {
+      if (!says_something) text.resize(part);
+    } else if (c == '{') {
+      const std::string_view name = sentence.substr(at + 1, sentence.find('}', at) - at - 1);
+      const std::size_t colon = std::min(name.find(':'), name.size());
+      const Value* value = find(name.substr(0, colon));
+      const bool there = value != nullptr && !std::holds_alternative<std::monostate>(value->data());
+      says_something = says_something || (there && !value->says_nothing());
+      text += there ? in_form(*value, name.substr(std::min(colon + 1, name.size()))) : missing;
+      at += name.size() + 1;
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string Figures::text() const {
+  if (rows_.empty()) return told_;
+  Table table({{"figure", Align::left}, {"value", Align::left}});
+  for (const Row& row : rows_) table.add({row.label, row.text});
+  return told_ + table.text();
+}
+
+std::string table_of(const Value::List& rows, const std::vector<FigureColumn>& columns) {
+  if (rows.empty()) return {};
+  std::vector<Column> heads;
+  for (const FigureColumn& column : columns) heads.push_back({column.title, column.align});
+  Table table(std::move(heads));
+  for (const Value& row : rows) {
+    std::vector<std::string> cells;
+    const auto* figures = std::get_if<Inner>(&row.data());
+    for (const FigureColumn& column : columns) {
+      if (figures != nullptr) cells.push_back((*figures)->sentence(column.cell, "-"));
+    }
+    table.add(std::move(cells));
+  }
+  return table.text();
+}
+
+}  // namespace compueye::firmware

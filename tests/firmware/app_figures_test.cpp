@@ -1,0 +1,81 @@
+#include "firmware/text/figures.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+using namespace compueye::firmware;
+
+namespace {
+
+Figures some() {
+  return {{"file", "a\nb.rec"},
+          {"frames", 1},
+          {"lines", std::uint64_t{1234567}},
+          {"none", std::optional<int>()},
+          {"rate_hz", 30.0},
+          {"share", 0.123456},
+          {"unknown", std::nan("")},
+          {"bytes", 1536},
+          {"wall_s", 185.0},
+          {"span_ns", 185'000'000'000},
+          {"serial", ""},
+          {"live", true},
+          {"dropped", Figures{{"superseded", 2}, {"corrupt", 0}, {"stopped", 1}}},
+          {"nothing", Figures{{"superseded", 0}, {"why", ""}}},
+          {"scenes", Value::List{"dots", "bars"}},
+          {"last", Figures{{"quality", Figures{{"nmse", 0.5}}}}}};
+}
+
+}  // namespace
+
+TEST_CASE("a sentence takes the figures by their keys") {
+  const Figures f = some();
+  CHECK(f.sentence("{file}: {frames} of {lines}, {rate_hz} Hz, {live}, {scenes}") ==
+        "a\\nb.rec: 1 of 1234567, 30 Hz, true, dots, bars");
+  CHECK(f.sentence("{last.quality.nmse} {dropped.superseded} {dropped}") == "0.5 2 2 superseded, 1 stopped");
+  CHECK(f.sentence("").empty());
+}
+
+TEST_CASE("a figure has the form that its sentence asks for") {
+  const Figures f = some();
+  CHECK(f.sentence("{share:3} {share:.2} {lines:,} {bytes:bytes}") == "0.123 0.12 1,234,567 1.50 KiB");
+  CHECK(f.sentence("{wall_s:duration} {span_ns:ns} {dropped:sum}") == "3 min 05 s 3 min 05 s 3");
+  CHECK(f.sentence("{frames:# frame} {dropped.superseded:# time} {dropped.corrupt:# frame}") ==
+        "1 frame 2 times 0 frames");
+  CHECK(f.sentence("{live:on|off} {dropped.corrupt:on|off} {serial:|any} {frames:|any}") == "on off any 1");
+}
+
+TEST_CASE("what is not there is told so, and a part that says nothing is left out") {
+  const Figures f = some();
+  CHECK(f.sentence("{none} {none:3} {nowhere} {file.inner} {last.quality.none} {unknown:3}") ==
+        "n/a n/a n/a n/a n/a n/a");
+  CHECK(f.sentence("{none} {nowhere:bytes}", "-") == "- -");
+  CHECK(f.sentence("a[ {dropped.corrupt} corrupt][, {dropped.stopped} stopped][ ({nothing})][{serial}{none}]z") ==
+        "a, 1 stoppedz");
+  CHECK(f.sentence("[{dropped.corrupt} of {frames}]") == "0 of 1");
+}
+
+TEST_CASE("text is what was told, in order, and then the lines") {
+  Figures f = some();
+  f.tell("{frames:# frame}").say(" {frames}[\n").tell("{bytes}\n");
+  CHECK(f.text() == "1 frame {frames}[\n1536\n");
+  f.line("frames", "1");
+  CHECK(f.text() == "1 frame {frames}[\n1536\nfigure  value\n------  -----\nframes  1\n");
+  CHECK(Figures{}.text().empty());
+}
+
+TEST_CASE("a table has a line for each of the figures") {
+  const Value::List rows{Figures{{"name", "dots"}, {"nmse", 0.25}}, Figures{{"name", "bars"}, {"nmse", Value()}},
+                         "no figures"};
+  CHECK(table_of(rows, {{"scene", "{name}", Align::left}, {"NMSE", "{nmse:3}[ *{name}]"}}) ==
+        "scene         NMSE\n"
+        "-----  -----------\n"
+        "dots   0.250 *dots\n"
+        "bars       - *bars\n"
+        "\n");
+  CHECK(table_of({}, {{"scene", "{name}"}}).empty());
+}
