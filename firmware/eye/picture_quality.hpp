@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "firmware/text/figures.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
 #include "hal/try.hpp"
@@ -19,6 +22,10 @@ struct PictureQuality {
                                                             const hal::Image& truth) {
   return PictureQuality{TRY(recon::nmse(picture, truth)), TRY(recon::psnr(picture, truth)),
                         TRY(recon::ssim(picture, truth))};
+}
+
+[[nodiscard]] inline Value value_of(const std::optional<PictureQuality>& q) {
+  return q ? Value(Figures{{"nmse", q->nmse}, {"psnr_db", q->psnr_db}, {"ssim", q->ssim}}) : Value();
 }
 
 }  // namespace compueye::firmware

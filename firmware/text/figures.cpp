@@ -56,18 +56,18 @@ double sum_of(const Value& value) {
 }
 
 std::string in_form(const Value& value, std::string_view form) {
+  if (const std::size_t bar = form.find('|'); bar != std::string_view::npos) {
+    return value.says_nothing() ? std::string(form.substr(bar + 1)) : in_form(value, form.substr(0, bar));
+  }
   const double number = number_of(value);
   if (form.empty()) return text_of(value);
+  if (form.front() == '\'') return std::string(form.substr(1, form.rfind('\'') - 1));
   if (form == ",") return grouped(static_cast<std::int64_t>(number));
   if (form == "bytes") return bytes(static_cast<std::uint64_t>(number));
   if (form == "duration") return duration(number);
   if (form == "ns") return duration(number / 1e9);
   if (form == "sum") return fmt::format("{:.0f}", sum_of(value));
   if (form.front() == '#') return text_of(value) + std::string(form.substr(1)) + (number == 1.0 ? "" : "s");
-  if (const std::size_t bar = form.find('|'); bar != std::string_view::npos) {
-    if (value.says_nothing()) return std::string(form.substr(bar + 1));
-    return bar == 0 ? text_of(value) : std::string(form.substr(0, bar));
-  }
   int digits = 0;
   const bool decimals = form.front() == '.';
   std::from_chars(form.data() + (decimals ? 1 : 0), form.data() + form.size(), digits);
@@ -167,7 +167,7 @@ std::string Figures::text() const {
   return told_ + table.text();
 }
 
-std::string table_of(const Value::List& rows, const std::vector<FigureColumn>& columns) {
+std::string table_of(const Value::List& rows, const std::vector<FigureColumn>& columns, std::string_view missing) {
   if (rows.empty()) return {};
   std::vector<Column> heads;
   for (const FigureColumn& column : columns) heads.push_back({column.title, column.align});
@@ -176,7 +176,7 @@ std::string table_of(const Value::List& rows, const std::vector<FigureColumn>& c
     std::vector<std::string> cells;
     const auto* figures = std::get_if<Inner>(&row.data());
     for (const FigureColumn& column : columns) {
-      if (figures != nullptr) cells.push_back((*figures)->sentence(column.cell, "-"));
+      if (figures != nullptr) cells.push_back((*figures)->sentence(column.cell, missing));
     }
     table.add(std::move(cells));
   }

@@ -62,7 +62,7 @@ class Value {
 ///     ,          thousands set apart                    bytes      512 KiB
 ///     duration   of seconds, 3 min 05 s                 ns         the same of nanoseconds
 ///     # frame    the count of them: 1 frame, 2 frames   sum        of all figures in it
-///     on|off     the first when it says something, the second when not; |any: its text, or the second
+///     'on'       these words instead of it              3|none     3 when it says something, else these words
 ///
 /// Without a form: words made visible, figures in it that say something as "2 superseded, 1 corrupt", members of a list
 /// likewise set apart by commas. A part in [brackets] is left out when every figure in it says nothing. A figure that
@@ -112,7 +112,9 @@ struct FigureColumn {
   Align align = Align::right;
 };
 
-/// A line for each of `rows`, which are figures; "-" stands for one that is null or not there. Empty without rows.
-[[nodiscard]] std::string table_of(const Value::List& rows, const std::vector<FigureColumn>& columns);
+/// A line for each of `rows`, which are figures; `missing` stands for one that is null or not there. Empty without
+/// rows.
+[[nodiscard]] std::string table_of(const Value::List& rows, const std::vector<FigureColumn>& columns,
+                                   std::string_view missing = "-");
 
 }  // namespace compueye::firmware

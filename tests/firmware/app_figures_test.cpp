@@ -46,7 +46,8 @@ TEST_CASE("a figure has the form that its sentence asks for") {
   CHECK(f.sentence("{wall_s:duration} {span_ns:ns} {dropped:sum}") == "3 min 05 s 3 min 05 s 3");
   CHECK(f.sentence("{frames:# frame} {dropped.superseded:# time} {dropped.corrupt:# frame}") ==
         "1 frame 2 times 0 frames");
-  CHECK(f.sentence("{live:on|off} {dropped.corrupt:on|off} {serial:|any} {frames:|any}") == "on off any 1");
+  CHECK(f.sentence("{live:'on'|off} {dropped.corrupt:'on'|off} {serial:|any} {frames:|any} {share:.1|none}") ==
+        "on off any 1 0.1");
 }
 
 TEST_CASE("what is not there is told so, and a part that says nothing is left out") {

@@ -140,10 +140,6 @@ std::string compare_text(const Comparison& c) {
   return head_text(c) + table.text() + foot_text(c);
 }
 
-Figures report_of(const PictureQuality& q) {
-  return {{"nmse", q.nmse}, {"psnr_db", q.psnr_db}, {"ssim", q.ssim}};
-}
-
 Figures report_of(const ComparedRow& row) {
   Figures figures;
   for (const ComparedFigure& figure : figures_of(row)) {
@@ -168,7 +164,7 @@ Figures report_of(const Comparison& c) {
           {"threads", c.threads},
           {"planned", c.planned},
           {"complete", c.rows.size() == c.planned},
-          {"conventional", c.conventional_quality ? Value(report_of(*c.conventional_quality)) : Value()},
+          {"conventional", value_of(c.conventional_quality)},
           {"compared", rows},
           {"missing", c.missing},
           {"notes", c.notes}};

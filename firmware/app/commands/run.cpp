@@ -33,21 +33,6 @@ namespace {
 using hal::ErrorCode;
 using hal::Result;
 
-LadderReport ladder_report(const PointChoice& choice, const Sweep& points) {
-  LadderReport ladder;
-  ladder.deadline_ms = choice.deadline_ms;
-  ladder.age_ms = choice.age_ms;
-  ladder.fits = choice.fits;
-  ladder.memory_bytes = choice.memory_bytes;
-  for (const std::size_t i : choice.ladder) {
-    const MeasuredPoint& point = points.points[i];
-    ladder.rungs.push_back({point_text(point), point.levels[choice.level].quality.mean.nmse, point.p999_ms, 0});
-  }
-  ladder.sentence = sentence(choice, points);
-  if (!points.cut_short.empty()) ladder.sentence += "; the stored points are partial: " + points.cut_short;
-  return ladder;
-}
-
 /// From the board to the report, step by step; each step is a member, and what the next ones need stays here.
 class BoardRun {
  public:
@@ -82,7 +67,6 @@ class BoardRun {
   Result<void> print();
   [[nodiscard]] Result<void> verdict() const;
   void note(const std::string& sentence);
-  void fill_figures();
   [[nodiscard]] PipelineSettings pipeline_settings() const;
   /// What is in front of an eye on a cable is known only when it is named.
   [[nodiscard]] bool knows_scene() const {
@@ -123,7 +107,6 @@ Result<void> BoardRun::prepare() {
   truth_ = TRY(sim::scene_truth(scene_, board_.object));
   report_.scene = knows_scene() ? scene_.name : "not known";
   report_.seed = options_.seed;
-  report_.distance_mm = board_.object.distance_mm;
   report_.lossless = options_.waits_for_frames();
   return {};
 }
@@ -133,6 +116,7 @@ Result<void> BoardRun::make_eye() {
   const recon::Progress progress = session_.progress();
   progress(options_.replays() ? "recording" : board_.source.simulated() ? "simulated eye" : "eye", 0.0, 0.0);
   source_ = TRY(RunSource::make(options_, board_, scene_, frames(), session_.clock()));
+  report_.source = source_->name();
   TRY(choose_eye(progress));
   session_.end_progress();
   for (const std::string& sentence : choice_notes_) note(sentence);
@@ -150,12 +134,12 @@ Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
   // Iterations, threads or lambda by hand say what to run; nothing that was measured goes with them.
   const auto given = [this](std::string_view option) { return options_.overrides.has(option); };
   if (options_.deadline_ms && !given("--iterations") && !given("--threads") && !given("--lambda")) {
-    const auto points = load_points(board_.cache(), points_key(board_, living.response));
+    auto points = load_points(board_.cache(), points_key(board_, living.response));
     if (points) {
       const PointChoice choice = choose_points(*points, board_.noise_sigma(), *options_.deadline_ms, period_ms());
       ladder_ = TRY(make_ladder(board_, living, *points, choice, board_.cache(), ask));
-      report_.ladder = ladder_report(choice, *points);
-      choice_notes_.push_back(report_.ladder->sentence);
+      report_.ladder = LadderRun{std::move(*points), choice, {}, 0, 0};
+      choice_notes_.push_back(report_.ladder->sentence());
       return {};
     }
     choice_notes_.push_back(
@@ -193,26 +177,7 @@ PipelineSettings BoardRun::pipeline_settings() const {
   return settings;
 }
 
-void BoardRun::fill_figures() {
-  const recon::Reconstructor& r = eye().reconstructor();
-  report_.eye = {.board = board_.name,
-                 .source = source_->name(),
-                 .ommatidia = board_.eye.ommatidia(),
-                 .blind = static_cast<int>(std::count(eye().sees().begin(), eye().sees().end(), 0)),
-                 .dead = static_cast<int>(board_.sensor.dead.size()),
-                 .image_rows = r.image_rows(),
-                 .image_cols = r.image_cols(),
-                 .frame_rate_hz = board_.source.frame_rate_hz,
-                 .lambda = eye().lambda(),
-                 .rho = r.plan().rho,
-                 .point = r.operating_point(),
-                 .factor = eye().factor_origin(),
-                 .workspace_bytes = r.required_bytes(),
-                 .table_bytes = r.table_bytes()};
-}
-
 Result<void> BoardRun::run_pipeline() {
-  fill_figures();
   const auto sinks = make_sinks(options_, session_.clock(), report_.files);
   keeper_ = std::make_unique<FrameKeeper>(hal::FrameFormat{truth_.rows, truth_.cols}, frames());
   if (ladder_.rungs.empty()) {
@@ -222,7 +187,7 @@ Result<void> BoardRun::run_pipeline() {
   LadderSolver solver(ladder_);
   DeadlineWatch watch(solver, session_.clock(), *keeper_);
   auto done = run_with(solver, *sinks, watch);
-  for (std::size_t r = 0; r < watch.frames().size(); ++r) report_.ladder->rungs[r].frames = watch.frames()[r];
+  report_.ladder->frames = watch.frames();
   report_.ladder->steps_down = watch.rule().steps_down();
   report_.ladder->steps_up = watch.rule().steps_up();
   return done;
@@ -279,14 +244,15 @@ Result<void> BoardRun::write_sheet() {
   hal::Image last(truth_.rows, truth_.cols);
   std::copy(keeper_->last().begin(), keeper_->last().end(), last.pixels.begin());
   report_.files.push_back(options_.sheet);
-  return write_run_sheet(options_.sheet, report_, truth_, conventional_, last);
+  return write_run_sheet(options_.sheet, figures_of(report_, board_, eye()), truth_, conventional_, last);
 }
 
 Result<void> BoardRun::print() {
-  const std::string json = json_text(report_figures(report_));
+  const Figures figures = figures_of(report_, board_, eye());
+  const std::string json = json_text(figures);
   if (!options_.report.empty()) TRY(write_file_atomically(options_.report, std::as_bytes(std::span(json))));
-  if (options_.table.empty()) return session_.print(report_text(report_), json);
-  return session_.print((options_.table == "both" ? table_header() : std::string()) + table_row(report_));
+  if (options_.table.empty()) return session_.print(figures);
+  return session_.print((options_.table == "both" ? table_header() : std::string()) + table_row(figures));
 }
 
 Result<void> BoardRun::verdict() const {

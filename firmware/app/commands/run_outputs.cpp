@@ -9,9 +9,7 @@
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/sinks/contact_sheet.hpp"
 #include "firmware/sinks/sink_list.hpp"
-#include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
-#include "recon/option_names.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -56,15 +54,6 @@ hal::Result<void> try_output_below(const std::string& file) {
   return try_output(file);
 }
 
-std::vector<std::string> quality_lines(const std::optional<PictureQuality>& q) {
-  if (!q) return {};
-  return {"NMSE " + significant(q->nmse, 3), "PSNR " + fixed(q->psnr_db, 1) + " dB", "SSIM " + fixed(q->ssim, 3)};
-}
-
-std::string title_of(const RunReport& report) {
-  return fmt::format("{}: {} at {:g} mm", report.eye.board, report.scene, report.distance_mm);
-}
-
 }  // namespace
 
 hal::Result<void> try_outputs(const RunOptions& options) {
@@ -90,20 +79,27 @@ std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, const hal:
   return sinks;
 }
 
-hal::Result<void> write_run_sheet(const std::string& path, const RunReport& report, const hal::Image& truth,
+hal::Result<void> write_run_sheet(const std::string& path, const Figures& run, const hal::Image& truth,
                                   const hal::Image& conventional, const hal::Image& last) {
-  const EyeFigures& eye = report.eye;
+  using Lines = std::vector<std::string>;
   std::vector<Panel> panels;
   panels.push_back({"scene", {fmt::format("{} x {} pixels", truth.rows, truth.cols)}, truth});
-  if (!conventional.pixels.empty())
-    panels.push_back({"conventional eye", quality_lines(report.conventional), conventional});
-  Panel ours{fmt::format("reconstruction, frame {}", report.summary.last_frame), quality_lines(report.last_quality),
-             last};
-  ours.figures.push_back(
-      fmt::format("{}, {}, {} iterations", name(eye.point.solver), name(eye.point.basis), eye.point.iterations));
-  panels.push_back(std::move(ours));
+  if (!conventional.pixels.empty()) {
+    panels.push_back(
+        {"conventional eye",
+         Lines{run.sentence("NMSE {conventional.nmse:3}"), run.sentence("PSNR {conventional.psnr_db:.1} dB"),
+               run.sentence("SSIM {conventional.ssim:.3}")},
+         conventional});
+  }
+  panels.push_back(
+      {run.sentence("reconstruction, frame {last.frame}"),
+       Lines{
+           run.sentence("NMSE {last.quality.nmse:3}"), run.sentence("PSNR {last.quality.psnr_db:.1} dB"),
+           run.sentence("SSIM {last.quality.ssim:.3}"),
+           run.sentence("{operating_point.solver}, {operating_point.basis}, {operating_point.iterations} iterations")},
+       last});
   panels.push_back(TRY(error_panel(last, truth)));
-  return write_contact_sheet(path, title_of(report), panels);
+  return write_contact_sheet(path, run.sentence("{eye.board}: {scene} at {distance_mm} mm"), panels);
 }
 
 }  // namespace compueye::firmware

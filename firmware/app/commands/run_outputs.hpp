@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "firmware/app/commands/run.hpp"
-#include "firmware/app/commands/run_report.hpp"
+#include "firmware/app/report.hpp"
 #include "hal/clock.hpp"
 #include "hal/frame_sink.hpp"
 #include "hal/image.hpp"
@@ -26,8 +26,7 @@ namespace compueye::firmware {
 
 /// The contact sheet of a run: scene | conventional eye | reconstruction (the last delivered frame) | its error, with
 /// their figures. An empty `conventional` picture is left out.
-[[nodiscard]] hal::Result<void> write_run_sheet(const std::string& path, const RunReport& report,
-                                                const hal::Image& truth, const hal::Image& conventional,
-                                                const hal::Image& last);
+[[nodiscard]] hal::Result<void> write_run_sheet(const std::string& path, const Figures& run, const hal::Image& truth,
+                                                const hal::Image& conventional, const hal::Image& last);
 
 }  // namespace compueye::firmware

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <string>
@@ -9,7 +10,6 @@
 #include <utility>
 
 #include "firmware/text/number_text.hpp"
-#include "firmware/text/table.hpp"
 #include "firmware/text/words.hpp"
 #include "recon/option_names.hpp"
 
@@ -20,134 +20,31 @@ double ms(std::int64_t ns) {
   return static_cast<double>(ns) / 1e6;
 }
 
-std::string ms_text(std::int64_t ns) {
-  return significant(ms(ns), 3);
-}
-
-void add_times(Table& table, const std::string& what, const TimeStatistics& t) {
-  if (t.count == 0) {
-    table.add({what, "n/a", "n/a", "n/a", "n/a"});
-    return;
-  }
-  table.add({what, ms_text(t.median_ns), ms_text(t.p90_ns), ms_text(t.p99_ns), ms_text(t.max_ns)});
-}
-
-std::string times_text(const RunSummary& s) {
-  Table table({{"ms a frame", Align::left}, {"median"}, {"p90"}, {"p99"}, {"max"}});
-  add_times(table, "solve", s.solve);
-  add_times(table, "age", s.age);
-  return table.text();
-}
-
-std::string drops_text(const hal::FrameAccount& account) {
-  std::string text;
-  for (std::size_t r = 0; r < hal::drop_reason_count; ++r) {
-    const auto reason = static_cast<hal::DropReason>(r);
-    if (account.drops(reason) == 0) continue;
-    text += fmt::format("{}{} {}", text.empty() ? " (" : ", ", account.drops(reason), hal::name(reason));
-  }
-  return text.empty() ? text : text + ")";
-}
-
 std::string times(std::uint64_t count) {
   return count == 1 ? "once" : fmt::format("{} times", count);
 }
 
-/// "stepped down 2 times and up once; frames of ..."
-std::string steps_text(const LadderReport& report) {
-  std::string text =
-      fmt::format("stepped down {} and up {}; frames of", times(report.steps_down), times(report.steps_up));
-  for (std::size_t r = 0; r < report.rungs.size(); ++r) {
-    text += fmt::format("{} {}: {}", r > 0 ? "," : "", report.rungs[r].point, report.rungs[r].frames);
-  }
-  return text;
+Figures eye_figures(const Board& board, const ReadyEye& eye, const std::string& source) {
+  const auto& sees = eye.sees();
+  return {{"board", board.name},
+          {"source", source},
+          {"ommatidia", board.eye.ommatidia()},
+          {"blind_ommatidia", std::count(sees.begin(), sees.end(), 0)},
+          {"dead_ommatidia", board.sensor.dead.size()},
+          {"image_rows", eye.reconstructor().image_rows()},
+          {"image_columns", eye.reconstructor().image_cols()},
+          {"frame_rate_hz", board.source.frame_rate_hz}};
 }
 
-std::string eye_text(const RunReport& report) {
-  const EyeFigures& e = report.eye;
-  std::string text = fmt::format("{} ({}): {} ommatidia, {} blind", e.board, e.source, e.ommatidia, e.blind);
-  if (e.dead > 0) text += fmt::format(", {} dead", e.dead);
-  text += fmt::format("; {} x {} pixels; scene {} at {:g} mm, seed {}\n", e.image_rows, e.image_cols,
-                      visible_text(report.scene), report.distance_mm, report.seed);
-  text += fmt::format("{}, {}, {} iterations, lambda {}{}, rho {}\n", name(e.point.solver), name(e.point.basis),
-                      e.point.iterations, significant(e.lambda.value, 3),
-                      e.lambda.by_rule ? " by rule from sigma " + significant(e.lambda.sigma, 3) : " as given",
-                      significant(e.rho, 3));
-  text += fmt::format("set up in {}, factor {}; memory: workspace {}, tables {}\n", duration(report.setup_s),
-                      name(e.factor), bytes(e.workspace_bytes), bytes(e.table_bytes));
-  return text;
-}
-
-std::string frames_text(const RunReport& report) {
-  const RunSummary& s = report.summary;
-  std::string text = fmt::format("frames: {} produced = {} delivered + {} dropped{}; {}; ended: {} after {}\n",
-                                 s.frames.produced, s.frames.delivered, s.frames.total_dropped(), drops_text(s.frames),
-                                 report.lossless ? "lossless" : "live", name(s.ending),
-                                 duration(static_cast<double>(s.wall_ns) / 1e9));
-  if (report.deadline) {
-    text += report.deadline->sentence() + "\n";
-  }
-  if (report.ladder) text += report.ladder->sentence + "\n" + steps_text(*report.ladder) + "\n";
-  if (report.deadline || report.ladder) {
-    text += fmt::format("deadline misses: {} of {}\n", s.deadline_misses, s.frames.delivered);
-  }
-  return text;
-}
-
-std::string health_text(const RunSummary& s) {
-  std::string text =
-      fmt::format("health: {} converged, {} used their budget", s.health.converged, s.health.budget_used);
-  const auto add = [&](std::uint64_t count, std::string_view what) {
-    if (count > 0) text += fmt::format(", {} {}", count, what);
-  };
-  add(s.health.saturated_frames, "with saturated channels");
-  add(s.health.overrun_flags, "with overrun flags");
-  add(s.health.dark_frames, "dark");
-  add(s.health.untrusted_times, "with an untrusted time");
-  add(s.health.config_mismatches, "with another configuration");
-  add(s.health.read_timeouts, "reads timed out");
-  if (s.masked_max > 0) text += fmt::format("; {} to {} channels masked", s.masked_min, s.masked_max);
-  if (const std::string counters = hal::text_of(s.source_counters); !counters.empty()) text += "\nsource: " + counters;
-  return text + "\n";
-}
-
-std::string quality_text(const RunReport& report) {
-  if (!report.quality) return {};
-  Table table({{"against the scene", Align::left}, {"NMSE"}, {"PSNR dB"}, {"SSIM"}});
-  const auto add = [&](const std::string& what, const std::optional<PictureQuality>& q) {
-    if (q) table.add({what, significant(q->nmse, 3), fixed(q->psnr_db, 1), fixed(q->ssim, 3)});
-  };
-  add(fmt::format("reconstruction, mean of {}", report.measured), report.quality);
-  add("conventional eye, one frame", report.conventional);
-  return table.text();
-}
-
-/// Of a table whose rows are printed by different processes: widths are agreed, not measured.
-struct FixedColumn {
-  std::string_view title;
-  int width;  // negative: left
-};
-constexpr std::array<FixedColumn, 12> columns{{{"eye", -12},
-                                               {"scene", -10},
-                                               {"NMSE", 8},
-                                               {"PSNR dB", 8},
-                                               {"SSIM", 6},
-                                               {"conv NMSE", 10},
-                                               {"conv PSNR", 10},
-                                               {"conv SSIM", 10},
-                                               {"ms a frame", 11},
-                                               {"produced", 9},
-                                               {"delivered", 10},
-                                               {"dropped", 8}}};
-
-std::string line(const std::array<std::string, columns.size()>& cells) {
-  std::string text;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const auto width = static_cast<std::size_t>(std::abs(columns[i].width));
-    text += columns[i].width < 0 ? fmt::format("{:<{}}", cells[i], width) : fmt::format("{:>{}}", cells[i], width);
-    if (columns[i].width < 0) text += ' ';
-  }
-  return text + "\n";
+Figures point_figures(const ReadyEye& eye) {
+  const recon::OperatingPoint point = eye.reconstructor().operating_point();
+  const LambdaChoice& lambda = eye.lambda();
+  return {
+      {"solver", name(point.solver)},         {"basis", name(point.basis)},
+      {"operator", name(point.op)},           {"precision", point.precision == recon::Precision::f32 ? "f32" : "f64"},
+      {"iterations", point.iterations},       {"lambda", lambda.value},
+      {"lambda_by_rule", lambda.by_rule},     {"sigma", lambda.by_rule ? Value(lambda.sigma) : Value()},
+      {"rho", eye.reconstructor().plan().rho}};
 }
 
 Figures times_figures(const TimeStatistics& times) {
@@ -155,48 +52,23 @@ Figures times_figures(const TimeStatistics& times) {
           {"p90", ms(times.p90_ns)}, {"p99", ms(times.p99_ns)}, {"max", ms(times.max_ns)}};
 }
 
-Value quality_figures(const std::optional<PictureQuality>& quality) {
-  if (!quality) return {};
-  return Figures{{"nmse", quality->nmse}, {"psnr_db", quality->psnr_db}, {"ssim", quality->ssim}};
-}
-
-Figures eye_figures(const EyeFigures& eye) {
-  return {{"board", eye.board},
-          {"source", eye.source},
-          {"ommatidia", eye.ommatidia},
-          {"blind_ommatidia", eye.blind},
-          {"dead_ommatidia", eye.dead},
-          {"image_rows", eye.image_rows},
-          {"image_columns", eye.image_cols},
-          {"frame_rate_hz", eye.frame_rate_hz}};
-}
-
-Figures point_figures(const EyeFigures& eye) {
-  return {{"solver", name(eye.point.solver)},
-          {"basis", name(eye.point.basis)},
-          {"operator", name(eye.point.op)},
-          {"precision", eye.point.precision == recon::Precision::f32 ? "f32" : "f64"},
-          {"iterations", eye.point.iterations},
-          {"lambda", eye.lambda.value},
-          {"lambda_by_rule", eye.lambda.by_rule},
-          {"sigma", eye.lambda.by_rule ? Value(eye.lambda.sigma) : Value()},
-          {"rho", eye.rho}};
-}
-
-Figures ladder_figures(const LadderReport& report, std::uint64_t misses) {
-  Value::List points;
-  for (const LadderReport::Rung& rung : report.rungs) {
-    points.push_back(
-        Figures{{"point", rung.point}, {"nmse", rung.nmse}, {"p999_ms", rung.p999_ms}, {"frames", rung.frames}});
+Figures ladder_figures(const LadderRun& ladder, std::uint64_t misses) {
+  Value::List rungs;
+  for (std::size_t r = 0; r < ladder.choice.ladder.size(); ++r) {
+    const MeasuredPoint& point = ladder.points.points[ladder.choice.ladder[r]];
+    rungs.push_back(Figures{{"point", point_text(point)},
+                            {"nmse", point.levels[ladder.choice.level].quality.mean.nmse},
+                            {"p999_ms", point.p999_ms},
+                            {"frames", r < ladder.frames.size() ? ladder.frames[r] : 0}});
   }
-  return {{"deadline_ms", report.deadline_ms},
-          {"fits", report.fits},
+  return {{"deadline_ms", ladder.choice.deadline_ms},
+          {"fits", ladder.choice.fits},
           {"chosen_by", "stored points"},
-          {"predicted_age_ms", report.age_ms},
-          {"memory_bytes", report.memory_bytes},
-          {"points", std::move(points)},
-          {"steps_down", report.steps_down},
-          {"steps_up", report.steps_up},
+          {"predicted_age_ms", ladder.choice.age_ms},
+          {"memory_bytes", ladder.choice.memory_bytes},
+          {"points", std::move(rungs)},
+          {"steps_down", ladder.steps_down},
+          {"steps_up", ladder.steps_up},
           {"misses", misses}};
 }
 
@@ -246,7 +118,7 @@ Value last_figures(const RunReport& report) {
                  {"dual_residual", s.last->dual_residual},
                  {"channels_used", s.last->channels_used},
                  {"channels_reweighted", s.last->channels_reweighted},
-                 {"quality", quality_figures(report.last_quality)}};
+                 {"quality", value_of(report.last_quality)}};
 }
 
 Figures stage_figures(const StageAccounts& accounts) {
@@ -257,67 +129,146 @@ Figures stage_figures(const StageAccounts& accounts) {
           {"publish", figures_of(accounts.publish)}};
 }
 
+void tell_eye(Figures& f, bool lambda_by_rule) {
+  f.tell(
+      "{eye.board} ({eye.source}): {eye.ommatidia} ommatidia, {eye.blind_ommatidia} blind"
+      "[, {eye.dead_ommatidia} dead]; {eye.image_rows} x {eye.image_columns} pixels; scene {scene} at {distance_mm} "
+      "mm, seed {seed}\n"
+      "{operating_point.solver}, {operating_point.basis}, {operating_point.iterations} iterations, lambda "
+      "{operating_point.lambda:3}");
+  f.tell(lambda_by_rule ? " by rule from sigma {operating_point.sigma:3}" : " as given");
+  f.tell(
+      ", rho {operating_point.rho:3}\n"
+      "set up in {setup_s:duration}, factor {factor}; memory: workspace {memory.workspace_bytes:bytes}, tables "
+      "{memory.table_bytes:bytes}\n");
+}
+
+/// "stepped down 2 times and up once; frames of ..."
+std::string steps_text(const LadderRun& ladder) {
+  std::string text =
+      fmt::format("stepped down {} and up {}; frames of", times(ladder.steps_down), times(ladder.steps_up));
+  for (std::size_t r = 0; r < ladder.frames.size(); ++r) {
+    text += fmt::format("{} {}: {}", r > 0 ? "," : "", point_text(ladder.points.points[ladder.choice.ladder[r]]),
+                        ladder.frames[r]);
+  }
+  return text;
+}
+
+void tell_frames(Figures& f, const RunReport& report) {
+  f.tell(
+      "frames: {frames.produced} produced = {frames.delivered} delivered + {frames.dropped:sum} dropped"
+      "[ ({frames.dropped})]; {pacing}; ended: {ending} after {wall_s:duration}\n");
+  if (report.deadline) f.say(report.deadline->sentence() + "\n");
+  if (report.ladder) f.say(report.ladder->sentence() + "\n" + steps_text(*report.ladder) + "\n");
+  if (report.deadline || report.ladder) f.tell("deadline misses: {deadline.misses} of {frames.delivered}\n");
+  f.tell(
+      "health: {health.converged} converged, {health.budget_used} used their budget"
+      "[, {health.saturated_frames} with saturated channels][, {health.overrun_flags} with overrun flags]"
+      "[, {health.dark_frames} dark][, {health.untrusted_times} with an untrusted time]"
+      "[, {health.config_mismatches} with another configuration][, {health.read_timeouts} reads timed out]"
+      "[; {health.masked_channels_min} to {health.masked_channels_max} channels masked]\n");
+  const std::string counters = hal::text_of(report.summary.source_counters);
+  if (!counters.empty()) f.say("source: " + counters + "\n");
+}
+
+void tell_tables(Figures& f, const RunReport& report) {
+  const Value::List stages{Figures{{"stage", "solve"}, {"ms", *f.find("solve_ms")}},
+                           Figures{{"stage", "age"}, {"ms", *f.find("age_ms")}}};
+  f.say("\n" +
+        table_of(stages, {{"ms a frame", "{stage}", Align::left},
+                          {"median", "{ms.median:3|n/a}"},
+                          {"p90", "{ms.p90:3|n/a}"},
+                          {"p99", "{ms.p99:3|n/a}"},
+                          {"max", "{ms.max:3|n/a}"}}) +
+        "\n");
+  if (!report.quality) return;
+  Value::List eyes{
+      Figures{{"eye", fmt::format("reconstruction, mean of {}", report.measured)}, {"is", value_of(report.quality)}}};
+  if (report.conventional) {
+    eyes.push_back(Figures{{"eye", "conventional eye, one frame"}, {"is", value_of(report.conventional)}});
+  }
+  f.say(table_of(eyes, {{"against the scene", "{eye}", Align::left},
+                        {"NMSE", "{is.nmse:3}"},
+                        {"PSNR dB", "{is.psnr_db:.1}"},
+                        {"SSIM", "{is.ssim:.3}"}}));
+}
+
+/// Of a table whose rows are printed by different processes: widths are agreed, not measured.
+struct FixedColumn {
+  std::string_view title;
+  int width;  // negative: left
+  std::string_view cell;
+};
+constexpr std::array<FixedColumn, 12> columns{{{"eye", -12, "{eye.board}"},
+                                               {"scene", -10, "{scene}"},
+                                               {"NMSE", 8, "{quality.nmse:3}"},
+                                               {"PSNR dB", 8, "{quality.psnr_db:.1}"},
+                                               {"SSIM", 6, "{quality.ssim:.3}"},
+                                               {"conv NMSE", 10, "{conventional.nmse:3}"},
+                                               {"conv PSNR", 10, "{conventional.psnr_db:.1}"},
+                                               {"conv SSIM", 10, "{conventional.ssim:.3}"},
+                                               {"ms a frame", 11, "{solve_ms.median:3|n/a}"},
+                                               {"produced", 9, "{frames.produced}"},
+                                               {"delivered", 10, "{frames.delivered}"},
+                                               {"dropped", 8, "{frames.dropped:sum}"}}};
+
+std::string padded(const FixedColumn& column, std::string_view cell) {
+  return column.width < 0 ? fmt::format("{:<{}} ", cell, -column.width) : fmt::format("{:>{}}", cell, column.width);
+}
+
 }  // namespace
 
-std::string report_text(const RunReport& report) {
-  return eye_text(report) + frames_text(report) + health_text(report.summary) + "\n" + times_text(report.summary) +
-         "\n" + quality_text(report);
+std::string LadderRun::sentence() const {
+  const std::string text = firmware::sentence(choice, points);
+  return points.cut_short.empty() ? text : text + "; the stored points are partial: " + points.cut_short;
 }
 
 std::string table_header() {
-  std::array<std::string, columns.size()> titles;
-  std::size_t width = 0;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    titles[i] = columns[i].title;
-    width += static_cast<std::size_t>(std::abs(columns[i].width)) + (columns[i].width < 0 ? 1U : 0U);
-  }
-  return line(titles) + std::string(width, '-') + "\n";
+  std::string titles;
+  for (const FixedColumn& column : columns) titles += padded(column, column.title);
+  return titles + "\n" + std::string(titles.size(), '-') + "\n";
 }
 
-std::string table_row(const RunReport& report) {
-  const auto figures = [](const std::optional<PictureQuality>& q) {
-    if (!q) return std::array<std::string, 3>{"n/a", "n/a", "n/a"};
-    return std::array<std::string, 3>{significant(q->nmse, 3), fixed(q->psnr_db, 1), fixed(q->ssim, 3)};
-  };
-  const auto ours = figures(report.quality), conventional = figures(report.conventional);
-  const RunSummary& s = report.summary;
-  return line({report.eye.board, visible_text(report.scene), ours[0], ours[1], ours[2], conventional[0],
-               conventional[1], conventional[2], s.solve.count > 0 ? ms_text(s.solve.median_ns) : "n/a",
-               std::to_string(s.frames.produced), std::to_string(s.frames.delivered),
-               std::to_string(s.frames.total_dropped())});
+std::string table_row(const Figures& run) {
+  std::string row;
+  for (const FixedColumn& column : columns) row += padded(column, run.sentence(column.cell));
+  return row + "\n";
 }
 
-Figures report_figures(const RunReport& report) {
+Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& eye) {
   const RunSummary& s = report.summary;
-  Figures figures{
-      {"eye", eye_figures(report.eye)},
-      {"scene", report.scene},
-      {"seed", report.seed},
-      {"distance_mm", report.distance_mm},
-      {"pacing", report.lossless ? "lossless" : "live"},
-      {"operating_point", point_figures(report.eye)},
-      {"factor", name(report.eye.factor)},
-      {"memory", Figures{{"workspace_bytes", report.eye.workspace_bytes}, {"table_bytes", report.eye.table_bytes}}},
-      {"setup_s", report.setup_s},
-      {"ending", name(s.ending)},
-      {"frames", figures_of(s.frames)},
-      {"stages", stage_figures(s.stages)},
-      {"wall_s", ms(s.wall_ns) / 1e3},
-      {"solve_ms", times_figures(s.solve)},
-      {"age_ms", times_figures(s.age)},
-      {"correct_ms", times_figures(s.correct)},
-      {"write_ms", times_figures(s.write)},
-      {"deadline", deadline_figures(report)},
-      {"health", health_figures(s)},
-      {"source_counters", counter_figures(s.source_counters)},
-      {"quality", quality_figures(report.quality)},
-      {"quality_frames", report.measured},
-      {"conventional", quality_figures(report.conventional)},
-      {"last", last_figures(report)},
-      {"files", report.files},
-      {"notes", report.notes}};
-  if (s.error) figures.add("error", figures_of(*s.error));
-  return figures;
+  Figures f{{"eye", eye_figures(board, eye, report.source)},
+            {"scene", report.scene},
+            {"seed", report.seed},
+            {"distance_mm", board.object.distance_mm},
+            {"pacing", report.lossless ? "lossless" : "live"},
+            {"operating_point", point_figures(eye)},
+            {"factor", name(eye.factor_origin())},
+            {"memory", Figures{{"workspace_bytes", eye.reconstructor().required_bytes()},
+                               {"table_bytes", eye.reconstructor().table_bytes()}}},
+            {"setup_s", report.setup_s},
+            {"ending", name(s.ending)},
+            {"frames", figures_of(s.frames)},
+            {"stages", stage_figures(s.stages)},
+            {"wall_s", ms(s.wall_ns) / 1e3},
+            {"solve_ms", times_figures(s.solve)},
+            {"age_ms", times_figures(s.age)},
+            {"correct_ms", times_figures(s.correct)},
+            {"write_ms", times_figures(s.write)},
+            {"deadline", deadline_figures(report)},
+            {"health", health_figures(s)},
+            {"source_counters", counter_figures(s.source_counters)},
+            {"quality", value_of(report.quality)},
+            {"quality_frames", report.measured},
+            {"conventional", value_of(report.conventional)},
+            {"last", last_figures(report)},
+            {"files", report.files},
+            {"notes", report.notes}};
+  if (s.error) f.add("error", figures_of(*s.error));
+  tell_eye(f, eye.lambda().by_rule);
+  tell_frames(f, report);
+  tell_tables(f, report);
+  return f;
 }
 
 }  // namespace compueye::firmware

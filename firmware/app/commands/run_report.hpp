@@ -9,58 +9,33 @@
 #include "firmware/app/report.hpp"
 #include "firmware/eye/picture_quality.hpp"
 #include "firmware/eye/ready_eye.hpp"
-#include "firmware/eye/reconstructor_maker.hpp"
 #include "firmware/operating_points/deadline_choice.hpp"
+#include "firmware/operating_points/point_choice.hpp"
 #include "firmware/pipeline/run_summary.hpp"
 
 namespace compueye::firmware {
 
-/// What a run with stored points says about its deadline.
-struct LadderReport {
-  struct Rung {
-    std::string point;  ///< "admm dct, 30 iterations"
-    double nmse = 0.0;  ///< mean on the evaluation scenes
-    double p999_ms = 0.0;
-    std::uint64_t frames = 0;  ///< delivered
-  };
-  double deadline_ms = 0.0;
-  double age_ms = 0.0;
-  bool fits = false;
-  std::uint64_t memory_bytes = 0;
-  std::vector<Rung> rungs;
+/// What a run with stored points came to.
+struct LadderRun {
+  Sweep points;
+  PointChoice choice;
+  std::vector<std::uint64_t> frames;  ///< delivered, by rung
   std::uint64_t steps_down = 0;
   std::uint64_t steps_up = 0;
-  std::string sentence;
+
+  /// Which point was chosen and why.
+  [[nodiscard]] std::string sentence() const;
 };
 
-/// What is fixed before the first frame.
-struct EyeFigures {
-  std::string board;
-  std::string source;  ///< back end and serial
-  int ommatidia = 0;
-  int blind = 0;  ///< see nothing of the object plane
-  int dead = 0;   ///< listed as dead
-  int image_rows = 0;
-  int image_cols = 0;
-  double frame_rate_hz = 0.0;
-  LambdaChoice lambda;
-  double rho = 0.0;
-  recon::OperatingPoint point;
-  FactorOrigin factor = FactorOrigin::made;
-  std::uint64_t workspace_bytes = 0;
-  std::uint64_t table_bytes = 0;
-};
-
-/// Everything `compueye run` has to say when it is over.
+/// What a run came to, step by step.
 struct RunReport {
-  EyeFigures eye;
+  std::string source;  ///< back end and serial
   std::string scene;
   std::int64_t seed = 0;
-  double distance_mm = 0.0;
   bool lossless = false;
   double setup_s = 0.0;
   std::optional<DeadlineChoice> deadline;  ///< by trial
-  std::optional<LadderReport> ladder;      ///< by stored points
+  std::optional<LadderRun> ladder;         ///< by stored points
   RunSummary summary;
   std::optional<PictureQuality> quality;  ///< mean over `measured` delivered frames
   std::size_t measured = 0;
@@ -70,14 +45,12 @@ struct RunReport {
   std::vector<std::string> notes;
 };
 
-/// For people: a few lines and a table of times.
-[[nodiscard]] std::string report_text(const RunReport& report);
-
-/// For machines: every figure, under keys with the unit in their name.
-[[nodiscard]] Figures report_figures(const RunReport& report);
+/// Everything `compueye run` has to say when it is over: for people a few lines and a table of times, for machines
+/// every figure, under keys with the unit in their name.
+[[nodiscard]] Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& eye);
 
 /// A table with a row a run, of columns as wide in every run, so that a script can put rows below one header.
 [[nodiscard]] std::string table_header();
-[[nodiscard]] std::string table_row(const RunReport& report);
+[[nodiscard]] std::string table_row(const Figures& run);
 
 }  // namespace compueye::firmware
