@@ -55,6 +55,11 @@ double sum_of(const Value& value) {
   return sum;
 }
 
+std::size_t count_of(const Value& value) {
+  const auto* list = std::get_if<Value::List>(&value.data());
+  return list == nullptr ? 0 : list->size();
+}
+
 std::string in_form(const Value& value, std::string_view form) {
   if (const std::size_t bar = form.find('|'); bar != std::string_view::npos) {
     return value.says_nothing() ? std::string(form.substr(bar + 1)) : in_form(value, form.substr(0, bar));
@@ -68,9 +73,11 @@ std::string in_form(const Value& value, std::string_view form) {
   if (form == "ns") return duration(number / 1e9);
   if (form == "sum") return fmt::format("{:.0f}", sum_of(value));
   if (form.front() == '#') return text_of(value) + std::string(form.substr(1)) + (number == 1.0 ? "" : "s");
+  if (form == "count") return fmt::format("{}", count_of(value));
   int digits = 0;
   const bool decimals = form.front() == '.';
   std::from_chars(form.data() + (decimals ? 1 : 0), form.data() + form.size(), digits);
+  if (form.back() == '%') return significant(100.0 * number, digits) + " %";
   return decimals ? fixed(number, digits) : significant(number, digits);
 }
 
@@ -100,9 +107,8 @@ Figures::Figures(std::initializer_list<Member> members) {
   for (const Member& member : members) add(member.key, member.value);
 }
 
-Figures& Figures::add(std::string_view key, std::string label, std::string text, Value value) {
-  if (!text.empty()) line(std::move(label), std::move(text));
-  return add(key, std::move(value));
+Figures& Figures::add(std::string_view key, Value value, std::string label, std::string_view sentence) {
+  return add(key, std::move(value)).line(std::move(label), sentence);
 }
 
 Figures& Figures::add(std::string_view key, Value value) {
@@ -110,8 +116,8 @@ Figures& Figures::add(std::string_view key, Value value) {
   return *this;
 }
 
-Figures& Figures::line(std::string label, std::string text) {
-  rows_.push_back({std::move(label), std::move(text)});
+Figures& Figures::line(std::string label, std::string_view sentence) {
+  lines_.add({std::move(label), this->sentence(sentence)});
   return *this;
 }
 
@@ -125,13 +131,20 @@ Figures& Figures::say(std::string_view text) {
 }
 
 const Value* Figures::find(std::string_view path) const {
+  if (path.empty() && !members_.empty()) return &members_.back().second;
   const std::size_t dot = path.find('.');
   const auto at = std::find_if(members_.begin(), members_.end(),
                                [key = path.substr(0, dot)](const auto& member) { return member.first == key; });
   if (at == members_.end()) return nullptr;
   if (dot == std::string_view::npos) return &at->second;
+  path.remove_prefix(dot + 1);
+  if (const auto* list = std::get_if<Value::List>(&at->second.data())) {
+    std::size_t index = 0;
+    std::from_chars(path.data(), path.data() + path.size(), index);
+    return index < list->size() ? &(*list)[index] : nullptr;
+  }
   const auto* inner = std::get_if<Inner>(&at->second.data());
-  return inner == nullptr ? nullptr : (*inner)->find(path.substr(dot + 1));
+  return inner == nullptr ? nullptr : (*inner)->find(path);
 }
 
 std::string Figures::sentence(std::string_view sentence, std::string_view missing) const {
@@ -140,7 +153,11 @@ std::string Figures::sentence(std::string_view sentence, std::string_view missin
   bool says_something = false;
   for (std::size_t at = 0; at < sentence.size(); ++at) {
     const char c = sentence[at];
-    if (c == '[') {
+    if (std::string_view("[]{}").find(c) != std::string_view::npos &&
+        sentence.substr(at + 1, 1) == sentence.substr(at, 1)) {
+      text += c;
+      ++at;
+    } else if (c == '[') {
       part = text.size();
       says_something = false;
     } else if (c == ']') {
@@ -161,10 +178,7 @@ std::string Figures::sentence(std::string_view sentence, std::string_view missin
 }
 
 std::string Figures::text() const {
-  if (rows_.empty()) return told_;
-  Table table({{"figure", Align::left}, {"value", Align::left}});
-  for (const Row& row : rows_) table.add({row.label, row.text});
-  return told_ + table.text();
+  return lines_.size() == 0 ? told_ : told_ + lines_.text();
 }
 
 std::string table_of(const Value::List& rows, const std::vector<FigureColumn>& columns, std::string_view missing) {

@@ -55,18 +55,19 @@ class Value {
 /// What a command has to say: each figure once, a key and a value for programs; and sentences and tables for people,
 /// which take the figures by their keys.
 ///
-/// In a sentence `{key}` stands for the text of that figure, `{key.key}` for one of the figures in it, and
-/// `{key:form}` for it in another form:
+/// In a sentence `{key}` stands for the text of that figure, `{key.key}` for one of the figures in it (`{key.0}` for
+/// the first of a list), and `{key:form}` for it in another form:
 ///
 ///     3          with three significant digits          .2         with two decimals
+///     3%         a share with three digits, 1.25 %      count      of the members of a list
 ///     ,          thousands set apart                    bytes      512 KiB
 ///     duration   of seconds, 3 min 05 s                 ns         the same of nanoseconds
 ///     # frame    the count of them: 1 frame, 2 frames   sum        of all figures in it
 ///     'on'       these words instead of it              3|none     3 when it says something, else these words
 ///
 /// Without a form: words made visible, figures in it that say something as "2 superseded, 1 corrupt", members of a list
-/// likewise set apart by commas. A part in [brackets] is left out when every figure in it says nothing. A figure that
-/// is null, or that is not there, is "n/a".
+/// likewise set apart by commas. A part in [brackets] is left out when every figure in it says nothing; [[, ]], {{ and
+/// }} are single ones. `{}` is the last figure so far. A figure that is null, or that is not there, is "n/a".
 class Figures {
  public:
   struct Member {
@@ -78,30 +79,26 @@ class Figures {
   Figures(std::initializer_list<Member> members);
 
   Figures& add(std::string_view key, Value value);
-  /// With a line of the table for people; an empty `text` keeps the figure from them.
-  Figures& add(std::string_view key, std::string label, std::string text, Value value);
-  /// A line of the table for people only, about figures that programs get elsewhere.
-  Figures& line(std::string label, std::string text);
+  /// With a line of the table for people.
+  Figures& add(std::string_view key, Value value, std::string label, std::string_view sentence = "{}");
+  /// A line of the table for people, about the figures so far.
+  Figures& line(std::string label, std::string_view sentence);
   /// A sentence about the figures so far, for people; ends where it says so.
   Figures& tell(std::string_view sentence);
   /// What no figure says, for people, as it stands.
   Figures& say(std::string_view text);
 
   [[nodiscard]] std::string sentence(std::string_view sentence, std::string_view missing = "n/a") const;
-  /// What was told, then the table of labels and texts.
+  /// What was told, then the table of lines.
   [[nodiscard]] std::string text() const;
 
   [[nodiscard]] const std::vector<std::pair<std::string, Value>>& members() const noexcept { return members_; }
-  /// Of "key" or "key.key"; null when there is none.
+  /// As in a sentence; null when there is none.
   [[nodiscard]] const Value* find(std::string_view path) const;
 
  private:
-  struct Row {
-    std::string label;
-    std::string text;
-  };
   std::string told_;
-  std::vector<Row> rows_;
+  Table lines_{{{"figure", Align::left}, {"value", Align::left}}};
   std::vector<std::pair<std::string, Value>> members_;
 };
 

@@ -38,12 +38,15 @@ TEST_CASE("a sentence takes the figures by their keys") {
         "a\\nb.rec: 1 of 1234567, 30 Hz, true, dots, bars");
   CHECK(f.sentence("{last.quality.nmse} {dropped.superseded} {dropped}") == "0.5 2 2 superseded, 1 stopped");
   CHECK(f.sentence("").empty());
+  CHECK(f.sentence("[[{frames}, {{frames}}]]") == "[1, {frames}]");
+  CHECK(Figures{{"first", 1}, {"last", 2.5}}.sentence("{} {:3}") == "2.5 2.50");
 }
 
 TEST_CASE("a figure has the form that its sentence asks for") {
   const Figures f = some();
   CHECK(f.sentence("{share:3} {share:.2} {lines:,} {bytes:bytes}") == "0.123 0.12 1,234,567 1.50 KiB");
   CHECK(f.sentence("{wall_s:duration} {span_ns:ns} {dropped:sum}") == "3 min 05 s 3 min 05 s 3");
+  CHECK(f.sentence("{share:3%} {scenes:count} {frames:count} {scenes.1} {scenes.2}") == "12.3 % 2 0 bars n/a");
   CHECK(f.sentence("{frames:# frame} {dropped.superseded:# time} {dropped.corrupt:# frame}") ==
         "1 frame 2 times 0 frames");
   CHECK(f.sentence("{live:'on'|off} {dropped.corrupt:'on'|off} {serial:|any} {frames:|any} {share:.1|none}") ==

@@ -177,7 +177,7 @@ TEST_CASE("JSON output is valid whatever the figures hold") {
 
 TEST_CASE("a figure is said once, to people and to programs") {
   Figures figures;
-  figures.add("rows", "rows", "1,600", 1600).add("only", "not shown").line("note", "not counted");
+  figures.add("rows", 1600, "rows", "{:,}").add("only", "not shown").line("note", "not counted");
   CHECK(figures.text() == "figure  value\n------  -----------\nrows    1,600\nnote    not counted\n");
   CHECK(Json::parse(json_text(figures)) == Json{{"rows", 1600}, {"only", "not shown"}});
 }

@@ -16,7 +16,6 @@
 #include "firmware/files/npy.hpp"
 #include "firmware/files/npy_header.hpp"
 #include "firmware/files/response_file.hpp"
-#include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -46,13 +45,13 @@ void add_array_figures(const NpyArray& array, Figures& figures) {
     ++finite;
   }
   const auto non_finite = static_cast<std::int64_t>(array.values.size()) - finite;
-  figures.add("shape", "shape", shape_text(array.shape), array.shape);
+  figures.add("shape", array.shape).line("shape", shape_text(array.shape));
   if (finite > 0) {
-    figures.add("min", "smallest", significant(least, 6), least);
-    figures.add("max", "largest", significant(most, 6), most);
-    figures.add("mean", "mean", significant(sum / static_cast<double>(finite), 6), sum / static_cast<double>(finite));
+    figures.add("min", least, "smallest", "{:6}");
+    figures.add("max", most, "largest", "{:6}");
+    figures.add("mean", sum / static_cast<double>(finite), "mean", "{:6}");
   }
-  figures.add("non_finite", "NaN or infinite", grouped(non_finite), non_finite);
+  figures.add("non_finite", non_finite, "NaN or infinite", "{:,}");
 }
 
 Result<void> inspect_board(const InspectRequest& o, const recon::Progress& progress, Figures& figures) {
@@ -102,7 +101,7 @@ Result<void> add_figures(const InspectRequest& o, const recon::Progress& progres
 
 Result<void> inspect(const InspectRequest& o, Session& session) {
   Figures figures;
-  figures.add("file", "file", o.what, o.what);
+  figures.add("file", o.what, "file");
   const auto done = add_figures(o, session.progress(), figures);
   session.end_progress();
   TRY(session.check_stop());

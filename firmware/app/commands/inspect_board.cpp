@@ -1,12 +1,8 @@
 #include "firmware/app/commands/inspect.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <numbers>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,10 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using hal::Result;
-
-double degrees(double radians) {
-  return radians * 180.0 / std::numbers::pi;
-}
 
 Value value_of(const SettingValue& value) {
   const auto convert = [](const auto& plain) -> Value {
@@ -67,44 +59,32 @@ Figures settings_figures(const Board& board, std::string_view section) {
 }
 
 void add_eye(const Board& board, Figures& figures) {
-  const hal::EyeGeometry& eye = board.eye;
-  const hal::ObjectPlane& object = board.object;
-  figures.add("board", "board", board.name, board.name);
-  figures.add("description", "description", board.description, board.description);
-  figures.add("eye", "eye",
-              fmt::format("{}x{} ommatidia, {} lattice, {:.6g} deg apart, {:.6g} deg acceptance", eye.rows, eye.columns,
-                          hal::name(eye.lattice), degrees(eye.interommatidial_rad), degrees(eye.acceptance_rad)),
-              settings_figures(board, "eye"));
-  figures.add("object", "object",
-              fmt::format("{}x{} pixels on {}x{} mm at {} mm", object.rows, object.cols, object.height_mm,
-                          object.width_mm, object.distance_mm),
-              settings_figures(board, "object"));
+  figures.add("board", board.name, "board").add("description", board.description, "description");
+  figures.add("eye", settings_figures(board, "eye"), "eye",
+              "{eye.rows}x{eye.columns} ommatidia, {eye.lattice} lattice, {eye.interommatidial_deg} deg apart, "
+              "{eye.acceptance_deg} deg acceptance");
+  figures.add("object", settings_figures(board, "object"), "object",
+              "{object.rows}x{object.cols} pixels on {object.height_mm}x{object.width_mm} mm at "
+              "{object.distance_mm} mm");
 }
 
 void add_sensor(const Board& board, Figures& figures) {
-  const hal::SensorSettings& sensor = board.sensor;
-  figures.add("sensor", "sensor",
-              fmt::format("{} bits, full scale {:.6g} white pixels, read noise {:.4g} LSB, {} dead", sensor.bits,
-                          sensor.full_scale, sensor.read_noise_lsb, sensor.dead.size()),
-              settings_figures(board, "sensor"));
-  figures.add("lsb", "LSB", significant(sensor.lsb(), 6) + " white pixels", sensor.lsb());
-  figures.add("noise_sigma", "noise of a sample", significant(board.noise_sigma(), 6) + " white pixels",
-              board.noise_sigma());
-  figures.add(
-      "source", "source",
-      fmt::format("{} {}, {:.6g} frames a second", board.source.kind, board.source.serial, board.source.frame_rate_hz),
-      settings_figures(board, "source"));
+  figures.add("sensor", settings_figures(board, "sensor"), "sensor",
+              "{sensor.bits} bits, full scale {sensor.full_scale} white pixels, read noise {sensor.read_noise_lsb} "
+              "LSB, {sensor.dead:count} dead");
+  figures.add("lsb", board.sensor.lsb(), "LSB", "{:6} white pixels");
+  figures.add("noise_sigma", board.noise_sigma(), "noise of a sample", "{:6} white pixels");
+  figures.add("source", settings_figures(board, "source"), "source",
+              "{source.kind} {source.serial}, {source.frame_rate_hz} frames a second");
 }
 
 void add_solver(const Board& board, Figures& figures) {
-  const recon::Objective& objective = board.objective;
-  const std::string constraint = objective.constraint == recon::ConstraintKind::box
-                                     ? fmt::format("box [{}, {}]", objective.lo, objective.hi)
-                                     : std::string(name(objective.constraint));
-  figures.add("reconstruction", "reconstruction",
-              fmt::format("{}, {} basis, {}, {} iterations", name(board.plan.solver), name(objective.basis), constraint,
-                          board.plan.iterations),
-              settings_figures(board, "reconstruction"));
+  figures.add("reconstruction", settings_figures(board, "reconstruction"), "reconstruction",
+              board.objective.constraint == recon::ConstraintKind::box
+                  ? "{reconstruction.solver}, {reconstruction.basis} basis, box [[{reconstruction.lo}, "
+                    "{reconstruction.hi}]], {reconstruction.iterations} iterations"
+                  : "{reconstruction.solver}, {reconstruction.basis} basis, {reconstruction.constraint}, "
+                    "{reconstruction.iterations} iterations");
 }
 
 /// Returns what the board's factor has to be.
@@ -117,10 +97,10 @@ Result<recon::Factor> add_rules(const Board& board, const recon::Response& a, Fi
   recon::Objective objective = board.objective;
   objective.lambda = lambda.value;
   const double rho = recon::resolve_rho(a, objective, board.plan);
-  const auto whose = [](bool by_the_rule) { return by_the_rule ? " (by rule)" : " (the board's)"; };
-  figures.add("lambda_by_rule", "lambda by rule", significant(by_rule, 5), by_rule);
-  figures.add("lambda", "lambda in use", significant(lambda.value, 5) + whose(lambda.by_rule), lambda.value);
-  figures.add("rho", "rho in use", significant(rho, 5) + whose(!(board.plan.rho > 0.0)), rho);
+  const auto whose = [](bool by_the_rule) { return std::string(by_the_rule ? " (by rule)" : " (the board's)"); };
+  figures.add("lambda_by_rule", by_rule, "lambda by rule", "{:5}");
+  figures.add("lambda", lambda.value, "lambda in use", "{:5}" + whose(lambda.by_rule));
+  figures.add("rho", rho, "rho in use", "{:5}" + whose(!(board.plan.rho > 0.0)));
   return recon::Reconstructor::wanted_factor(a, objective, board.plan);
 }
 
@@ -158,8 +138,8 @@ void add_cache(const Board& board, const FactorKey& key, Figures& figures) {
     total += error ? 0 : size;
   }
   const std::string state = state_of_factor(folder, key);
-  figures.add("cached_factors", "cached factors", fmt::format("{}, {}", files.size(), bytes(total)), files);
-  figures.add("factor", "this board's factor", factor_text(state), state);
+  figures.add("cached_factors", files, "cached factors", "{:count}, " + bytes(total));
+  figures.add("factor", state, "this board's factor", factor_text(state));
 }
 
 }  // namespace
@@ -173,9 +153,8 @@ Result<void> add_board_figures(const Board& board, const recon::Progress& progre
   const recon::Response a =
       recon::quantised(nominal.without_rows(board.sensor.dead), op.value_or(recon::OperatorKind::csr));
   const auto seeing = static_cast<int>(a.seeing_rows().size());
-  figures.add("seeing_channels", "seeing channels", fmt::format("{} of {}", grouped(seeing), grouped(a.rows())),
-              seeing);
-  figures.add("entries", "response entries", grouped(a.stored_entries()), a.stored_entries());
+  figures.add("seeing_channels", seeing, "seeing channels", "{:,} of " + grouped(a.rows()));
+  figures.add("entries", a.stored_entries(), "response entries", "{:,}");
   if (seeing == 0) return {};
   if (progress) progress("operator", 0.0, 0.0);
   TRY(add_operator_figures(a, op, figures));

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "calib/response_summary.hpp"
-#include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/option_names.hpp"
@@ -129,49 +128,42 @@ constexpr std::uint64_t most_factor_bytes = std::uint64_t{512} << 20U;
 void add_shape(const Response& a, const calib::ResponseSummary& s, Figures& figures) {
   const auto elements = static_cast<double>(a.rows()) * static_cast<double>(a.cols());
   const double density = static_cast<double>(s.entries) / elements;
-  figures.add("channels", "response", fmt::format("{} rows x {} columns", grouped(a.rows()), grouped(a.cols())),
-              a.rows());
-  figures.add("pixels", a.cols());
-  figures.add("stored_as", "stored as", a.is_dense() ? "dense" : "sparse rows", a.is_dense() ? "dense" : "sparse");
-  figures.add("stored_entries", a.stored_entries());
-  figures.add("entries", "non-zero entries",
-              fmt::format("{} ({} %)", grouped(s.entries), significant(100.0 * density, 3)), s.entries);
-  figures.add("density", density);
+  figures.add("channels", a.rows()).add("pixels", a.cols());
+  figures.line("response", "{channels:,} rows x {pixels:,} columns");
+  figures.add("stored_as", a.is_dense() ? "dense" : "sparse", "stored as", a.is_dense() ? "dense" : "sparse rows");
+  figures.add("stored_entries", a.stored_entries()).add("entries", s.entries).add("density", density);
+  figures.line("non-zero entries", "{entries:,} ({density:3%})");
 }
 
 void add_support(const calib::ResponseSummary& s, int duplicates, Figures& figures) {
-  figures.add("blind_rows", "blind rows", grouped(s.blind_rows), s.blind_rows);
-  figures.add("zero_columns", "unseen pixels", grouped(s.unseen_pixels()), s.unseen_pixels());
-  figures.add("duplicate_rows", "duplicate rows", grouped(duplicates), duplicates);
-  figures.add(
-      "support", "pixels seen",
-      fmt::format("{} to {} a row, median {:.6g}", grouped(s.support_min), grouped(s.support_max), s.support_median),
-      Figures{{"min", s.support_min}, {"median", s.support_median}, {"max", s.support_max}});
-  figures.add("most_seen", "rows seeing a pixel", "at most " + grouped(s.most_seen), s.most_seen);
+  figures.add("blind_rows", s.blind_rows, "blind rows", "{:,}");
+  figures.add("zero_columns", s.unseen_pixels(), "unseen pixels", "{:,}");
+  figures.add("duplicate_rows", duplicates, "duplicate rows", "{:,}");
+  figures.add("support", Figures{{"min", s.support_min}, {"median", s.support_median}, {"max", s.support_max}},
+              "pixels seen", "{support.min:,} to {support.max:,} a row, median {support.median}");
+  figures.add("most_seen", s.most_seen, "rows seeing a pixel", "at most {:,}");
 }
 
 void add_ranges(const Response& a, Figures& figures) {
   const auto [least, most] = std::minmax_element(a.values().begin(), a.values().end());
-  figures.add("entry_range", "stored entries", fmt::format("{} to {}", significant(*least, 6), significant(*most, 6)),
-              std::vector<double>{*least, *most});
+  figures.add("entry_range", std::vector<double>{*least, *most}, "stored entries",
+              "{entry_range.0:6} to {entry_range.1:6}");
   const std::vector<double> sums = a.row_sums();
   std::vector<double> seeing;
   for (const std::int32_t m : a.seeing_rows()) seeing.push_back(sums[static_cast<std::size_t>(m)]);
   if (seeing.empty()) return;
   const auto [low, high] = std::minmax_element(seeing.begin(), seeing.end());
-  figures.add("row_sums", "row sums (seeing rows)",
-              fmt::format("{} to {} white pixels", significant(*low, 6), significant(*high, 6)),
-              std::vector<double>{*low, *high});
+  figures.add("row_sums", std::vector<double>{*low, *high}, "row sums (seeing rows)",
+              "{row_sums.0:6} to {row_sums.1:6} white pixels");
 }
 
 void add_symmetry(const Response& a, Figures& figures) {
   // As the solver's set-up does: blind rows have no place in the picture and so no mirror image.
   const std::size_t order = recon::find_mirror_symmetry(a.select_rows(a.seeing_rows())).order();
-  figures.add("mirror_symmetry", "mirror symmetry",
+  figures.add("mirror_symmetry", order, "mirror symmetry",
               order == 4   ? "left-right and up-down (set-up is 16 times faster)"
               : order == 2 ? "one axis (set-up is 4 times faster)"
-                           : "none",
-              order);
+                           : "none");
 }
 
 /// Exact, from a reconstructor that is handed an empty factor instead of computing one.
@@ -186,21 +178,19 @@ Result<void> add_memory(const Response& a, Figures& figures) {
   recon::Plan plan;
   recon::Factor factor{recon::resolve_rho(a, objective, plan), static_cast<int>(seeing), std::vector<float>(packed)};
   const auto made = TRY(recon::Reconstructor::create(a, objective, plan, std::move(factor)));
-  figures.add("rho_by_rule", "rho by rule", significant(made.plan().rho, 4), made.plan().rho);
+  figures.add("rho_by_rule", made.plan().rho, "rho by rule", "{:4}");
   figures.add(
-      "admm_memory", "memory of admm (f32)",
-      fmt::format("{} tables (factor {}), {} workspace", bytes(made.table_bytes()), bytes(packed * sizeof(float)),
-                  bytes(made.required_bytes())),
-      Figures{
-          {"tables", made.table_bytes()}, {"factor", packed * sizeof(float)}, {"workspace", made.required_bytes()}});
+      "admm_memory",
+      Figures{{"tables", made.table_bytes()}, {"factor", packed * sizeof(float)}, {"workspace", made.required_bytes()}},
+      "memory of admm (f32)",
+      "{admm_memory.tables:bytes} tables (factor {admm_memory.factor:bytes}), {admm_memory.workspace:bytes} "
+      "workspace");
   return {};
 }
 
 void add_lambda_scales(const Response& a, Figures& figures) {
-  const double norm = recon::lambda_scale(a, recon::BasisKind::identity);
-  figures.add("median_column_norm", "median column norm", significant(norm, 6), norm);
-  const double overlap = recon::lambda_scale(a, recon::BasisKind::dct);
-  figures.add("mean_overlap", "mean column sum", significant(overlap, 6), overlap);
+  figures.add("median_column_norm", recon::lambda_scale(a, recon::BasisKind::identity), "median column norm", "{:6}");
+  figures.add("mean_overlap", recon::lambda_scale(a, recon::BasisKind::dct), "mean column sum", "{:6}");
 }
 
 }  // namespace
@@ -208,12 +198,9 @@ void add_lambda_scales(const Response& a, Figures& figures) {
 hal::Result<void> add_operator_figures(const recon::Response& response, std::optional<recon::OperatorKind> asked,
                                        Figures& figures) {
   const auto found = TRY(recon::operator_figures(response, asked));
-  figures.add("operator", "operator (how A is applied)",
-              fmt::format("{}{}", recon::name(found.kind), asked ? "" : " (by rule)"), recon::name(found.kind));
-  figures.add("operator_cost", "A x, and as much A' y",
-              fmt::format("{} of tables, {} multiply-adds", bytes(found.bytes),
-                          grouped(static_cast<std::int64_t>(found.flops))),
-              Figures{{"bytes", found.bytes}, {"flops", found.flops}});
+  figures.add("operator", recon::name(found.kind), "operator (how A is applied)", asked ? "{}" : "{} (by rule)");
+  figures.add("operator_cost", Figures{{"bytes", found.bytes}, {"flops", found.flops}}, "A x, and as much A' y",
+              "{operator_cost.bytes:bytes} of tables, {operator_cost.flops:,} multiply-adds");
   return {};
 }
 
@@ -233,8 +220,8 @@ Result<void> add_response_figures(Response a, std::optional<PictureSize> size, c
   if (progress && !progress("norms", 0.0, 0.0)) {
     return fail(ErrorCode::interrupted, "inspect", "was stopped before it was complete");
   }
-  figures.add("largest_singular_value", "largest singular value",
-              significant(largest.value, 8) + (largest.settled ? "" : " (a lower bound: not settled)"), largest.value);
+  figures.add("largest_singular_value", largest.value, "largest singular value",
+              largest.settled ? "{:8}" : "{:8} (a lower bound: not settled)");
   figures.add("largest_singular_value_settled", largest.settled);
   add_lambda_scales(a, figures);
   if (!size || summary.seeing_rows() == 0) return {};

@@ -1,7 +1,5 @@
 #include "firmware/app/commands/reconstruct_report.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <numeric>
 #include <string>
@@ -9,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/text/number_text.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_list.hpp"
 
@@ -63,16 +60,11 @@ std::int64_t count(const ReconstructReport& report, recon::Health health) {
                        [&](const FrameRecord& r) { return r.info.health == health; });
 }
 
-std::string constraint_text(const recon::Objective& objective) {
-  if (objective.constraint != recon::ConstraintKind::box) return std::string(name(objective.constraint));
-  return fmt::format("box [{}, {}]", objective.lo, objective.hi);
-}
-
-std::string lambda_text(const ReconstructReport& r) {
-  const std::string value = significant(r.objective.lambda, 4);
-  if (!r.options.sigma) return value + " by hand";
-  return value + (r.options.lambda_from_samples ? " by risk of the first frame, sigma " : " by rule from sigma ") +
-         significant(*r.options.sigma, 4);
+/// What lambda is, and where it is from.
+std::string lambda_sentence(const ReconstructReport& r) {
+  if (!r.options.sigma) return "{objective.lambda:4} by hand";
+  return r.options.lambda_from_samples ? "{objective.lambda:4} by risk of the first frame, sigma {objective.sigma:4}"
+                                       : "{objective.lambda:4} by rule from sigma {objective.sigma:4}";
 }
 
 std::string lambda_origin(const ReconstructReport& r) {
@@ -81,32 +73,14 @@ std::string lambda_origin(const ReconstructReport& r) {
 }
 
 /// What says how far a solver may stay from y, and its value.
-std::string distance_name(const ReconstructReport& r) {
-  if (r.options.epsilon) return "epsilon";
-  return r.point.solver->rank == recon::RankUse::singular_values ? "rank" : "lambda";
-}
-
-std::string distance_text(const ReconstructReport& r) {
-  if (r.options.epsilon) return significant(*r.options.epsilon, 4);
-  if (r.point.solver->rank == recon::RankUse::singular_values) {
-    return grouped(r.plan.rank) + (r.options.rank ? " by hand" : " singular values: s^2 >= " + lambda_text(r));
+void add_distance(const ReconstructReport& r, Figures& f) {
+  if (r.options.epsilon) {
+    f.line("epsilon", "{objective.epsilon:4}");
+  } else if (r.point.solver->rank == recon::RankUse::singular_values) {
+    f.line("rank", r.options.rank ? "{rank:,} by hand" : "{rank:,} singular values: s^2 >= " + lambda_sentence(r));
+  } else {
+    f.line("lambda", lambda_sentence(r));
   }
-  return lambda_text(r);
-}
-
-bool has_gap(const ReconstructReport& r) {
-  return r.records.front().info.duality_gap >= 0.0;
-}
-
-std::string gap_text(const ReconstructReport& r) {
-  if (!has_gap(r)) return "none: this solver or problem has no dual to bound it by";
-  return significant(median(figures(r, gap_of)), 3) + (r.frames > 1 ? " (median)" : "") +
-         ", the most that the objective may lie above its optimum";
-}
-
-std::string health_text(const ReconstructReport& r) {
-  return fmt::format("{} converged, {} used their budget (normal in real time)", count(r, recon::Health::converged),
-                     count(r, recon::Health::budget_used));
 }
 
 bool rated(const ReconstructReport& r) {
@@ -150,66 +124,74 @@ Figures frame_figures(const FrameRecord& record) {
 }
 
 /// The mean over all frames where there is a truth.
-Value quality_figures(const ReconstructReport& r, Figures& f) {
-  if (!rated(r)) return {};
-  const double nmse = mean(r, nmse_of), psnr_db = mean(r, psnr_of), ssim = mean(r, ssim_of);
+void add_quality(const ReconstructReport& r, Figures& f) {
+  if (!rated(r)) {
+    f.add("quality", Value());
+    return;
+  }
   const std::string note = r.frames > 1 ? " (mean)" : "";
-  f.line("NMSE", significant(nmse, 4) + note);
-  f.line("PSNR", fixed(psnr_db, 2) + " dB" + note);
-  f.line("SSIM", fixed(ssim, 4) + note);
-  return Figures{{"nmse", nmse}, {"psnr_db", psnr_db}, {"ssim", ssim}};
+  f.add("quality", Figures{{"nmse", mean(r, nmse_of)}, {"psnr_db", mean(r, psnr_of)}, {"ssim", mean(r, ssim_of)}});
+  f.line("NMSE", "{quality.nmse:4}" + note).line("PSNR", "{quality.psnr_db:.2} dB" + note);
+  f.line("SSIM", "{quality.ssim:.4}" + note);
 }
 
-Value written_figures(const ReconstructReport& r, Figures& f) {
+void add_written(const ReconstructReport& r, Figures& f) {
   const auto name_or_none = [](const std::string& file) { return file.empty() ? Value() : Value(file); };
-  if (!r.options.out.empty()) f.line("written", r.options.out);
-  if (!r.options.png.empty()) f.line("written", r.options.png + (r.frames > 1 ? ", numbered by frame" : ""));
-  return Figures{{"npy", name_or_none(r.options.out)}, {"png", name_or_none(r.options.png)}};
+  f.add("written", Figures{{"npy", name_or_none(r.options.out)}, {"png", name_or_none(r.options.png)}});
+  if (!r.options.out.empty()) f.line("written", "{written.npy}");
+  if (!r.options.png.empty()) f.line("written", r.frames > 1 ? "{written.png}, numbered by frame" : "{written.png}");
 }
 
 void add_problem(const ReconstructReport& r, Figures& f) {
   const bool factor = recon::uses_factor(r.point.solver);
+  const bool box = r.objective.constraint == recon::ConstraintKind::box;
   f.add("response", r.options.response).add("samples", r.options.samples);
   f.add("weights", r.options.weights.empty() ? Value() : Value(r.options.weights));
-  f.add("operating_point", "operating point",
-        fmt::format("{}, {} basis, A as {}, {}, {} iterations", name(r.point.solver), name(r.point.basis),
-                    name(r.point.op), name_of(r.point.precision), r.point.iterations),
-        point_figures(r.point));
-  f.add("objective", "constraint", constraint_text(r.objective), objective_figures(r));
-  f.line(distance_name(r), distance_text(r));
-  f.add("rho", "rho", factor ? significant(r.plan.rho, 4) : "", factor ? Value(r.plan.rho) : Value());
-  f.add("rank", r.plan.rank > 0 ? Value(r.plan.rank) : Value());
+  f.add("operating_point", point_figures(r.point), "operating point",
+        "{operating_point.solver}, {operating_point.basis} basis, A as {operating_point.operator}, "
+        "{operating_point.precision}, {operating_point.iterations} iterations");
+  f.add("objective", objective_figures(r), "constraint",
+        box ? "box [[{objective.lo}, {objective.hi}]]" : "{objective.constraint}");
+  f.add("rho", factor ? Value(r.plan.rho) : Value()).add("rank", r.plan.rank > 0 ? Value(r.plan.rank) : Value());
+  add_distance(r, f);
+  if (factor) f.line("rho", "{rho:4}");
   f.add("relaxation", r.plan.relaxation).add("max_reweighted", r.plan.max_reweighted);
   f.add("rows", r.size.rows).add("cols", r.size.cols).add("channels", r.channels);
-  f.add("seeing_channels", "picture",
-        fmt::format("{}x{} pixels from {} seeing channels of {}", r.size.rows, r.size.cols, grouped(r.seeing_channels),
-                    grouped(r.channels)),
-        r.seeing_channels);
+  f.add("seeing_channels", r.seeing_channels, "picture",
+        "{rows}x{cols} pixels from {seeing_channels:,} seeing channels of {channels:,}");
+}
+
+void add_gap(const ReconstructReport& r, Figures& f) {
+  if (r.records.front().info.duality_gap < 0.0) {
+    f.add("median_duality_gap", Value(), "duality gap", "none: this solver or problem has no dual to bound it by");
+    return;
+  }
+  f.add(
+      "median_duality_gap", median(figures(r, gap_of)), "duality gap",
+      std::string(r.frames > 1 ? "{:3} (median)" : "{:3}") + ", the most that the objective may lie above its optimum");
 }
 
 }  // namespace
 
 Figures report_figures(const ReconstructReport& r) {
   const std::string of_frames = r.frames > 1 ? " (median)" : "";
-  const double time = median(figures(r, solve_ms)), objective = median(figures(r, objective_of));
-  const double residual = median(figures(r, residual_of));
   Figures f;
   add_problem(r, f);
-  f.add("frames", "frames", grouped(r.frames), r.frames);
-  f.add("setup_s", "set-up", duration(r.setup_s), r.setup_s);
-  f.add("median_frame_ms", "time a frame", significant(time, 3) + " ms (median, duality gap included)", time);
-  f.add("table_bytes", "memory", bytes(r.table_bytes) + " tables, " + bytes(r.workspace_bytes) + " workspace",
-        r.table_bytes);
-  f.add("workspace_bytes", r.workspace_bytes);
-  f.add("median_objective", "objective", significant(objective, 6) + of_frames, objective);
-  f.add("median_duality_gap", "duality gap", gap_text(r), has_gap(r) ? Value(median(figures(r, gap_of))) : Value());
-  f.add("median_residual", "residual", significant(residual, 4) + of_frames, residual);
-  f.add("health", "health", health_text(r),
+  f.add("frames", r.frames, "frames", "{:,}");
+  f.add("setup_s", r.setup_s, "set-up", "{:duration}");
+  f.add("median_frame_ms", median(figures(r, solve_ms)), "time a frame", "{:3} ms (median, duality gap included)");
+  f.add("table_bytes", r.table_bytes).add("workspace_bytes", r.workspace_bytes);
+  f.line("memory", "{table_bytes:bytes} tables, {workspace_bytes:bytes} workspace");
+  f.add("median_objective", median(figures(r, objective_of)), "objective", "{:6}" + of_frames);
+  add_gap(r, f);
+  f.add("median_residual", median(figures(r, residual_of)), "residual", "{:4}" + of_frames);
+  f.add("health",
         Figures{{"converged", count(r, recon::Health::converged)},
                 {"budget_used", count(r, recon::Health::budget_used)},
-                {"invalid", count(r, recon::Health::invalid)}});
-  f.add("quality", quality_figures(r, f));
-  f.add("written", written_figures(r, f));
+                {"invalid", count(r, recon::Health::invalid)}},
+        "health", "{health.converged} converged, {health.budget_used} used their budget (normal in real time)");
+  add_quality(r, f);
+  add_written(r, f);
   std::vector<Figures> frames;
   for (const FrameRecord& record : r.records) frames.push_back(frame_figures(record));
   return f.add("per_frame", frames);

@@ -16,7 +16,6 @@
 #include "firmware/eye/board.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/response_file.hpp"
-#include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -57,28 +56,21 @@ Result<void> try_response_output(const std::string& out, int ommatidia, int pixe
 Figures report_of(const NominalReport& r) {
   const calib::ResponseSummary& s = r.summary;
   Figures f;
-  f.add("board", "board", r.board, r.board);
-  f.line("response", fmt::format("{} ommatidia x {} pixels ({}x{}) at {} mm", grouped(s.ommatidia), grouped(s.pixels),
-                                 r.object.rows, r.object.cols, r.object.distance_mm));
-  f.add("distance_mm", r.object.distance_mm);
-  f.add("as_measured", "as measured", r.as_measured ? fmt::format("with build errors of seed {}", *r.as_measured) : "",
-        r.as_measured);
+  f.add("board", r.board, "board").add("distance_mm", r.object.distance_mm).add("as_measured", r.as_measured);
   f.add("ommatidia", s.ommatidia).add("pixels", s.pixels).add("rows", r.object.rows).add("cols", r.object.cols);
-  f.add("entries", "entries", fmt::format("{} ({} %)", grouped(s.entries), significant(100.0 * r.density(), 3)),
-        s.entries);
-  f.add("density", r.density());
-  f.add("blind_rows", "blind rows", grouped(s.blind_rows), s.blind_rows);
-  f.add("support", "pixels seen",
-        fmt::format("{} to {} a row, median {:.6g}", grouped(s.support_min), grouped(s.support_max), s.support_median),
-        Figures{{"min", s.support_min}, {"median", s.support_median}, {"max", s.support_max}});
+  f.line("response", "{ommatidia:,} ommatidia x {pixels:,} pixels ({rows}x{cols}) at {distance_mm} mm");
+  if (r.as_measured) f.line("as measured", "with build errors of seed {as_measured}");
+  f.add("entries", s.entries).add("density", r.density());
+  f.line("entries", "{entries:,} ({density:3%})");
+  f.add("blind_rows", s.blind_rows, "blind rows", "{:,}");
+  f.add("support", Figures{{"min", s.support_min}, {"median", s.support_median}, {"max", s.support_max}}, "pixels seen",
+        "{support.min:,} to {support.max:,} a row, median {support.median}");
   f.add("seen_pixels", s.seen_pixels);
-  f.add("unseen_pixels", "unseen pixels", grouped(s.unseen_pixels()), s.unseen_pixels());
-  f.add("most_seen", "rows seeing a pixel", "at most " + grouped(s.most_seen), s.most_seen);
-  f.add("seconds", "time", duration(r.seconds), r.seconds);
-  f.add("written", "written", r.out.empty() ? "" : r.out + (r.file_bytes ? ", " + bytes(*r.file_bytes) : ""),
-        r.out.empty() ? Value() : Value(r.out));
-  f.add("file_bytes", r.file_bytes);
-  return f;
+  f.add("unseen_pixels", s.unseen_pixels(), "unseen pixels", "{:,}");
+  f.add("most_seen", s.most_seen, "rows seeing a pixel", "at most {:,}");
+  f.add("seconds", r.seconds, "time", "{:duration}");
+  f.add("written", r.out.empty() ? Value() : Value(r.out)).add("file_bytes", r.file_bytes);
+  return r.out.empty() ? f : f.line("written", "{written}[, {file_bytes:bytes}]");
 }
 
 Result<void> write(const std::string& out, const recon::Response& response, NominalReport& report) {
