@@ -92,7 +92,8 @@ class Figures {
   /// What was told, then the table of lines.
   [[nodiscard]] std::string text() const;
 
-  [[nodiscard]] const std::vector<std::pair<std::string, Value>>& members() const noexcept { return members_; }
+  [[nodiscard]] const std::vector<std::pair<std::string, Value>>& members() const& noexcept { return members_; }
+  const std::vector<std::pair<std::string, Value>>& members() && = delete;
   /// As in a sentence; null when there is none.
   [[nodiscard]] const Value* find(std::string_view path) const;
 

@@ -245,29 +245,26 @@ const ComparedRow* best_of(const Comparison& comparison) {
   return best == comparison.rows.end() ? nullptr : &*best;
 }
 
-std::vector<ComparedFigure> figures_of(const ComparedRow& row) {
-  const auto where = [](bool there, auto value) {
-    return there ? ComparedFigure::Value(value) : ComparedFigure::Value();
-  };
-  const auto count = [](auto value) { return static_cast<std::int64_t>(value); };
+Figures figures_of(const ComparedRow& row) {
+  const bool has_gap = row.info.duality_gap >= 0.0;
   return {{"basis", name(row.contender.basis)},
           {"constraint", name(row.contender.constraint)},
           {"solver", name(row.contender.solver)},
           {"lambda", row.lambda},
-          {"rank", where(row.rank > 0, count(row.rank))},
+          {"rank", row.rank > 0 ? Value(row.rank) : Value()},
           {"nmse", row.quality.nmse},
           {"psnr_db", row.quality.psnr_db},
           {"ssim", row.quality.ssim},
           {"objective", row.info.objective},
-          {"excess", where(row.excess.has_value(), row.excess.value_or(0.0))},
-          {"duality_gap", where(row.info.duality_gap >= 0.0, row.info.duality_gap)},
+          {"excess", row.excess},
+          {"duality_gap", has_gap ? Value(row.info.duality_gap) : Value()},
           {"residual", row.info.residual},
-          {"iterations", count(row.info.iterations)},
+          {"iterations", row.info.iterations},
           {"health", row.info.health == recon::Health::converged ? "converged" : "budget_used"},
           {"solve_ms", row.solve_ms},
           {"setup_s", row.setup_s},
-          {"workspace_bytes", count(row.workspace_bytes)},
-          {"table_bytes", count(row.table_bytes)}};
+          {"workspace_bytes", row.workspace_bytes},
+          {"table_bytes", row.table_bytes}};
 }
 
 }  // namespace compueye::firmware

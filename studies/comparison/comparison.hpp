@@ -3,12 +3,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <variant>
 #include <vector>
 
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/picture_quality.hpp"
+#include "firmware/text/figures.hpp"
 #include "hal/clock.hpp"
 #include "hal/image.hpp"
 #include "recon/core/frame/frame_info.hpp"
@@ -89,14 +88,8 @@ struct Comparison {
 [[nodiscard]] hal::Result<Comparison> compare(const Board& board, const CompareOptions& options,
                                               const hal::Clock& clock, const recon::Progress& progress);
 
-/// A figure of a row for whoever writes all of them; no value: the row has none.
-struct ComparedFigure {
-  using Value = std::variant<std::monostate, std::string_view, double, std::int64_t>;
-  std::string_view key;
-  Value value;
-};
-/// Every figure of a row, the same keys in the same order for each.
-[[nodiscard]] std::vector<ComparedFigure> figures_of(const ComparedRow& row);
+/// Every figure of a row, the same keys in the same order for each; null: the row has none.
+[[nodiscard]] Figures figures_of(const ComparedRow& row);
 
 /// The row with the least NMSE; null when there is none.
 [[nodiscard]] const ComparedRow* best_of(const Comparison& comparison);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr int panel_pixels = 240;
 
-std::vector<std::string> figures_of(const PictureQuality& q) {
+std::vector<std::string> quality_lines(const PictureQuality& q) {
   return {fmt::format("NMSE {}", significant(q.nmse, 3)),
           fmt::format("{} dB, SSIM {}", fixed(q.psnr_db, 1), fixed(q.ssim, 2))};
 }
@@ -25,8 +25,8 @@ Panel panel_of(const ComparedRow& row, bool best) {
   const Contender& c = row.contender;
   std::string title = fmt::format("{}{} {}", best ? "* " : "", name(c.basis), name(c.solver));
   if (c.constraint != recon::ConstraintKind::none) title += fmt::format(" {}", name(c.constraint));
-  Panel panel{std::move(title), figures_of(row.quality), row.picture};
-  panel.figures.push_back(fmt::format("K {}, {} ms", row.info.iterations, significant(row.solve_ms, 3)));
+  Panel panel{std::move(title), quality_lines(row.quality), row.picture};
+  panel.figures.push_back(figures_of(row).sentence("K {iterations}, {solve_ms:3} ms"));
   return panel;
 }
 
@@ -45,45 +45,40 @@ std::string number(double value) {
   return text;
 }
 
-std::string cell(const ComparedFigure::Value& value) {
-  if (const auto* word = std::get_if<std::string_view>(&value)) return std::string(*word);
-  if (const auto* count = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *count);
-  if (const auto* figure = std::get_if<double>(&value)) return number(*figure);
-  return {};
-}
-
-/// The conventional eye as a row with the columns of `like`.
-std::vector<ComparedFigure> conventional_row(const PictureQuality& quality, std::vector<ComparedFigure> like) {
-  for (ComparedFigure& figure : like) {
-    figure.value = {};
-    if (figure.key == "solver") figure.value = "conventional eye";
-    if (figure.key == "nmse") figure.value = quality.nmse;
-    if (figure.key == "psnr_db") figure.value = quality.psnr_db;
-    if (figure.key == "ssim") figure.value = quality.ssim;
-  }
-  return like;
+std::string cell(const Value& value) {
+  return std::visit(
+      [](const auto& held) -> std::string {
+        using Held = std::decay_t<decltype(held)>;
+        if constexpr (std::is_same_v<Held, std::string>) return held;
+        if constexpr (std::is_same_v<Held, double>) return number(held);
+        if constexpr (std::is_integral_v<Held>) return fmt::format("{}", held);
+        return {};
+      },
+      value.data());
 }
 
 }  // namespace
 
 std::string comparison_csv(const Comparison& c) {
-  const auto line = [&](const std::vector<ComparedFigure>& row) {
+  if (c.rows.empty()) return {};
+  const auto line = [&](const Figures& row, const Figures& columns) {
     std::string text = fmt::format("{},{},{},{},{}", quoted(c.board), quoted(c.scene), c.scene_seed, c.seed,
                                    c.exact ? "exact" : "simulated eye");
-    for (const ComparedFigure& figure : row) text += ',' + cell(figure.value);
+    for (const auto& [key, ignored] : columns.members()) {
+      const Value* value = row.find(key);
+      text += ',' + (value == nullptr ? std::string() : cell(*value));
+    }
     return text + "\r\n";
   };
-  std::string text;
-  for (const ComparedRow& row : c.rows) {
-    const std::vector<ComparedFigure> figures = figures_of(row);
-    if (text.empty()) {
-      text = "board,scene,scene_seed,seed,samples";
-      for (const ComparedFigure& figure : figures) text += fmt::format(",{}", figure.key);
-      text += "\r\n";
-      if (c.conventional_quality) text += line(conventional_row(*c.conventional_quality, figures));
-    }
-    text += line(figures);
+  const Figures columns = figures_of(c.rows.front());
+  std::string text = "board,scene,scene_seed,seed,samples";
+  for (const auto& [key, ignored] : columns.members()) text += ',' + key;
+  text += "\r\n";
+  if (const auto& q = c.conventional_quality) {
+    text +=
+        line({{"solver", "conventional eye"}, {"nmse", q->nmse}, {"psnr_db", q->psnr_db}, {"ssim", q->ssim}}, columns);
   }
+  for (const ComparedRow& row : c.rows) text += line(figures_of(row), columns);
   return text;
 }
 
@@ -91,7 +86,7 @@ hal::Result<void> write_comparison_sheet(const std::string& path, const Comparis
   std::vector<Panel> panels;
   panels.push_back({"scene", {fmt::format("{} x {} pixels", c.truth.rows, c.truth.cols)}, c.truth});
   if (c.conventional && c.conventional_quality) {
-    panels.push_back({"conventional eye", figures_of(*c.conventional_quality), *c.conventional});
+    panels.push_back({"conventional eye", quality_lines(*c.conventional_quality), *c.conventional});
   }
   const ComparedRow* best = best_of(c);
   const ComparedRow* before = nullptr;

@@ -107,7 +107,8 @@ TEST_CASE("the CSV has the figures of every row and a line for the conventional 
   for (std::string line; std::getline(csv, line);) lines.push_back(line);
   REQUIRE(lines.size() == 1 + 1 + 3);
   std::string header = "board,scene,scene_seed,seed,samples";
-  for (const ComparedFigure& figure : figures_of(comparison->rows.front())) header += ',' + std::string(figure.key);
+  const Figures figures = figures_of(comparison->rows.front());
+  for (const auto& [key, value] : figures.members()) header += ',' + key;
   CHECK(lines.front() == header + '\r');
   for (const std::string& line : lines) {
     CHECK(std::count(line.begin(), line.end(), ',') == std::count(header.begin(), header.end(), ','));

@@ -7,19 +7,14 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "firmware/app/command.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/files/atomic_file.hpp"
-#include "firmware/text/number_text.hpp"
-#include "firmware/text/table.hpp"
 #include "hal/try.hpp"
-#include "recon/option_names.hpp"
 #include "recon/solver_list.hpp"
 #include "recon/worker_threads.hpp"
 #include "studies/comparison/comparison.hpp"
@@ -54,120 +49,91 @@ Result<void> check(const CompareRequest& o) {
               fmt::format("is {}, expected 1 to {}", o.threads.value_or(0), recon::WorkerThreads::most));
 }
 
-std::string_view name_of(recon::Health health) {
-  return health == recon::Health::converged ? "converged" : "budget used";
+/// What the table shows of a row beside its figures.
+Figures shown(const ComparedRow& row, bool best) {
+  Figures f = figures_of(row);
+  const bool by_rank = row.contender.solver->rank == recon::RankUse::singular_values;
+  f.add("best", best).add("penalty", f.sentence(by_rank ? "rank {rank:,|0}" : "{lambda:3}"));
+  f.add("over", !row.excess ? "-" : *row.excess == 0.0 ? "least" : fmt::format("+{:.1e}", *row.excess));
+  return f.add("gap", f.sentence("{duality_gap:2}", "-"))
+      .add("end", row.info.health == recon::Health::converged ? "converged" : "budget used");
 }
 
-std::string excess_text(const ComparedRow& row) {
-  if (!row.excess) return "-";
-  return *row.excess == 0.0 ? "least" : fmt::format("+{:.1e}", *row.excess);
+std::string table_text(const Comparison& c) {
+  Value::List rows;
+  if (const auto& q = c.conventional_quality) {
+    rows.push_back(
+        Figures{{"basis", "conventional eye"}, {"nmse", q->nmse}, {"psnr_db", q->psnr_db}, {"ssim", q->ssim}});
+  }
+  const ComparedRow* best = best_of(c);
+  for (const ComparedRow& row : c.rows) rows.push_back(shown(row, &row == best));
+  return table_of(rows,
+                  {{"basis", "{basis}", Align::left},
+                   {"constraint", "{constraint}", Align::left},
+                   {"solver", "{solver}", Align::left},
+                   {"NMSE  ", "{nmse:3}{best:' *'|  }"},
+                   {"PSNR dB", "{psnr_db:.2}"},
+                   {"SSIM", "{ssim:.3}"},
+                   {"lambda", "{penalty}"},
+                   {"objective", "{objective:5}"},
+                   {"over least", "{over}"},
+                   {"gap", "{gap}"},
+                   {"iterations", "{iterations:,}"},
+                   {"ms", "{solve_ms:3}"},
+                   {"health", "{end}", Align::left}},
+                  "");
 }
 
-/// lambda, or the rank that tsvd made of it.
-std::string penalty_text(const ComparedRow& row) {
-  if (row.contender.solver->rank == recon::RankUse::singular_values) return "rank " + grouped(row.rank);
-  return significant(row.lambda, 3);
+void tell_head(const Comparison& c, Figures& f) {
+  f.tell("{board} in front of {scene}: {seeing_channels:,} of {channels:,} ommatidia see its {rows} x {cols} pixels\n");
+  f.say(c.exact ? "y = A x + n with the very A that is inverted" : "y through the simulated eye");
+  f.tell("; noise of a sample {sigma:4} white pixels; seed {seed}, scene seed {scene_seed}\n\n");
 }
 
-std::vector<std::string> cells_of(const ComparedRow& row, bool best) {
-  return {std::string(name(row.contender.basis)),
-          std::string(name(row.contender.constraint)),
-          std::string(name(row.contender.solver)),
-          significant(row.quality.nmse, 3) + (best ? " *" : "  "),
-          fixed(row.quality.psnr_db, 2),
-          fixed(row.quality.ssim, 3),
-          penalty_text(row),
-          significant(row.info.objective, 5),
-          excess_text(row),
-          row.info.duality_gap >= 0.0 ? significant(row.info.duality_gap, 2) : "-",
-          grouped(row.info.iterations),
-          significant(row.solve_ms, 3),
-          std::string(name_of(row.info.health))};
-}
-
-std::string head_text(const Comparison& c) {
-  std::string text = fmt::format("{} in front of {}: {} of {} ommatidia see its {} x {} pixels\n", c.board, c.scene,
-                                 grouped(c.seeing), grouped(c.channels), c.truth.rows, c.truth.cols);
-  text += c.exact ? "y = A x + n with the very A that is inverted" : "y through the simulated eye";
-  return text + fmt::format("; noise of a sample {} white pixels; seed {}, scene seed {}\n\n", significant(c.sigma, 4),
-                            c.seed, c.scene_seed);
-}
-
-std::string foot_text(const Comparison& c) {
-  std::string text =
+void tell_foot(const Comparison& c, Figures& f) {
+  f.say(
       "\n* least NMSE. Solvers of one basis and constraint minimise the same objective: 'over least' says how far each "
       "is\n"
       "above the least among them, the duality gap how far at most above the optimum (that of admm and adm closes\n"
       "late), NMSE, PSNR and SSIM how good the picture is. omp, tikhonov and tsvd have objectives of their own.\n"
-      "ms: median of one frame on ";
-  text += c.threads == 1 ? "one thread" : fmt::format("{} threads", c.threads);
-  text += ", duality gap included.\n";
+      "ms: median of one frame on ");
+  f.tell(c.threads == 1 ? "one thread" : "{threads} threads").say(", duality gap included.\n");
   const bool pixels = std::any_of(c.rows.begin(), c.rows.end(), [](const ComparedRow& row) {
     return row.contender.basis == recon::BasisKind::identity && row.excess;
   });
   if (pixels && c.seeing > 1000 && c.seeing < c.truth.rows * c.truth.cols) {
-    text +=
+    f.say(
         "l1 in pixels is semi-convergent on so large an eye: NMSE falls, then rises while the objective goes on\n"
-        "falling, so a lower NMSE there may only mean fewer iterations.\n";
+        "falling, so a lower NMSE there may only mean fewer iterations.\n");
   }
-  if (c.rows.size() < c.planned) {
-    text += fmt::format("{} of {} done; missing: {}.\n", c.rows.size(), c.planned, fmt::join(c.missing, ", "));
-  }
-  for (const std::string& note : c.notes) text += "note: " + note + "\n";
-  return text;
-}
-
-std::string compare_text(const Comparison& c) {
-  Table table({{"basis", Align::left},
-               {"constraint", Align::left},
-               {"solver", Align::left},
-               {"NMSE  "},
-               {"PSNR dB"},
-               {"SSIM"},
-               {"lambda"},
-               {"objective"},
-               {"over least"},
-               {"gap"},
-               {"iterations"},
-               {"ms"},
-               {"health", Align::left}});
-  if (c.conventional_quality) {
-    const PictureQuality& q = *c.conventional_quality;
-    table.add({"conventional eye", "", "", significant(q.nmse, 3) + "  ", fixed(q.psnr_db, 2), fixed(q.ssim, 3)});
-  }
-  const ComparedRow* best = best_of(c);
-  for (const ComparedRow& row : c.rows) table.add(cells_of(row, &row == best));
-  return head_text(c) + table.text() + foot_text(c);
-}
-
-Figures report_of(const ComparedRow& row) {
-  Figures figures;
-  for (const ComparedFigure& figure : figures_of(row)) {
-    figures.add(figure.key, std::visit([](const auto& value) { return Value(value); }, figure.value));
-  }
-  return figures;
+  if (c.rows.size() < c.planned) f.tell("{compared:count} of {planned} done; missing: {missing}.\n");
+  for (const std::string& note : c.notes) f.say("note: " + note + "\n");
 }
 
 Figures report_of(const Comparison& c) {
   std::vector<Figures> rows;
-  for (const ComparedRow& row : c.rows) rows.push_back(report_of(row));
-  return {{"board", c.board},
-          {"scene", c.scene},
-          {"samples", c.exact ? "exact" : "simulated eye"},
-          {"sigma", c.sigma},
-          {"seed", c.seed},
-          {"scene_seed", c.scene_seed},
-          {"channels", c.channels},
-          {"seeing_channels", c.seeing},
-          {"rows", c.truth.rows},
-          {"cols", c.truth.cols},
-          {"threads", c.threads},
-          {"planned", c.planned},
-          {"complete", c.rows.size() == c.planned},
-          {"conventional", value_of(c.conventional_quality)},
-          {"compared", rows},
-          {"missing", c.missing},
-          {"notes", c.notes}};
+  for (const ComparedRow& row : c.rows) rows.push_back(figures_of(row));
+  Figures f{{"board", c.board},
+            {"scene", c.scene},
+            {"samples", c.exact ? "exact" : "simulated eye"},
+            {"sigma", c.sigma},
+            {"seed", c.seed},
+            {"scene_seed", c.scene_seed},
+            {"channels", c.channels},
+            {"seeing_channels", c.seeing},
+            {"rows", c.truth.rows},
+            {"cols", c.truth.cols},
+            {"threads", c.threads},
+            {"planned", c.planned},
+            {"complete", c.rows.size() == c.planned},
+            {"conventional", value_of(c.conventional_quality)},
+            {"compared", rows},
+            {"missing", c.missing},
+            {"notes", c.notes}};
+  tell_head(c, f);
+  f.say(table_text(c));
+  tell_foot(c, f);
+  return f;
 }
 
 /// One frame of samples solved in every way, as a table and a contact sheet. Ctrl-C keeps what was measured: it is
@@ -182,7 +148,7 @@ Result<void> run_compare(const CompareRequest& o, Session& session) {
   session.end_progress();
   const Comparison comparison = TRY(std::move(compared));
   // Printed first: a file that cannot be written must not cost the figures.
-  TRY(session.print(compare_text(comparison), report_of(comparison)));
+  TRY(session.print(report_of(comparison)));
   if (!o.csv.empty()) {
     const std::string csv = comparison_csv(comparison);
     TRY(write_file_atomically(o.csv, std::as_bytes(std::span(csv))));
