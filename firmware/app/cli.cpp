@@ -1,4 +1,4 @@
-#include "firmware/app/cli.hpp"
+#include "firmware/app/command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

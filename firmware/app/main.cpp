@@ -3,7 +3,7 @@
 #include <new>
 #include <string>
 
-#include "firmware/app/cli.hpp"
+#include "firmware/app/command.hpp"
 
 namespace {
 

@@ -7,6 +7,9 @@
 
 namespace compueye::firmware {
 
+/// For people: a table of the efficient points for each noise level and overall, and how to read it.
+[[nodiscard]] std::string sweep_text(const Sweep& sweep);
+
 /// A header line, then a line for every point at every noise level and one for it overall, and the conventional eye;
 /// RFC 4180.
 [[nodiscard]] std::string sweep_csv(const Sweep& sweep);

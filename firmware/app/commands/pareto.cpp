@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "firmware/app/command.hpp"
-#include "firmware/app/commands/pareto_report.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/operating_points/stored_points.hpp"

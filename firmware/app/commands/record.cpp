@@ -9,7 +9,7 @@
 
 #include "drivers/recording/recording_source.hpp"
 #include "firmware/app/command.hpp"
-#include "firmware/app/commands/recorded_with.hpp"
+#include "firmware/app/commands/run_source.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/source_list.hpp"
@@ -137,12 +137,8 @@ Result<void> record(const RecordRequest& o, Session& session) {
   const std::string scene_name = board.source.simulated() ? scene.name : "an unknown scene";
   const auto eye = TRY(board_source(
       board, {std::move(scene), static_cast<std::uint64_t>(o.seed), o.lossless, std::nullopt}, session.clock()));
-  recording::RecordingSettings settings;
-  settings.path = o.out;
-  settings.settings = RecordedWith{scene_name, o.scene_seed, o.seed}.text(board);
-  settings.unix_minus_clock_ns = unix_minus(session.clock());
-  settings.when_full = o.lossless ? recording::WhenFull::wait : recording::WhenFull::skip;
-  const auto source = TRY(RecordingSource::create(std::move(settings), *eye, session.clock()));
+  const auto source =
+      TRY(with_recorder({o.out, scene_name, o.scene_seed, o.seed, o.lossless}, board, *eye, session.clock()));
   TRY(source->start());
   const Recorded recorded = TRY(read_on(*source, goal_of(o, board), session));
   TRY(session.print(report_of(board, scene_name, *source, recorded)));

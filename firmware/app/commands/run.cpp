@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "firmware/app/commands/frame_keeper.hpp"
-#include "firmware/app/commands/recorded_with.hpp"
 #include "firmware/app/commands/run_outputs.hpp"
 #include "firmware/app/commands/run_report.hpp"
 #include "firmware/app/commands/run_source.hpp"

@@ -2,14 +2,58 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
-#include "firmware/app/commands/recorded_with.hpp"
+#include "drivers/recording/recording_file.hpp"
 #include "firmware/eye/source_list.hpp"
+#include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
 using hal::Result;
+
+namespace {
+
+/// Lines "key = value".
+std::string header_text(const RecordingRequest& request, const Board& board) {
+  std::string text = fmt::format("board = {}\ndistance_mm = {}\n", visible_text(board.name), board.object.distance_mm);
+  if (!board.source.simulated()) return text;
+  return text + fmt::format("scene = {}\nscene_seed = {}\nseed = {}\n", visible_text(request.scene), request.scene_seed,
+                            request.seed);
+}
+
+std::int64_t unix_minus(const hal::Clock& clock) {
+  using namespace std::chrono;
+  return duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count() - clock.now_ns();
+}
+
+}  // namespace
+
+Result<void> check_new_recording(const std::string& path) {
+  std::error_code ignored;
+  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
+  if (std::filesystem::is_regular_file(path, ignored)) {
+    return tl::unexpected(recording::file_failure(EEXIST, path, "cannot be written"));
+  }
+  if (!std::filesystem::is_directory(parent.empty() ? "." : parent, ignored)) {
+    return tl::unexpected(recording::file_failure(ENOENT, path, "cannot be written"));
+  }
+  return {};
+}
+
+Result<std::unique_ptr<recording::RecordingSource>> with_recorder(const RecordingRequest& request, const Board& board,
+                                                                  hal::SampleSource& source, hal::Clock& clock) {
+  recording::RecordingSettings settings;
+  settings.path = request.path;
+  settings.settings = header_text(request, board);
+  settings.unix_minus_clock_ns = unix_minus(clock);
+  settings.when_full = request.lossless ? recording::WhenFull::wait : recording::WhenFull::skip;
+  return recording::RecordingSource::create(std::move(settings), source, clock);
+}
 
 Result<RunSource> RunSource::make(const RunOptions& options, const Board& board, const sim::Scene& scene,
                                   std::uint64_t frames, hal::Clock& clock) {
@@ -26,12 +70,8 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
   if (options.lossless && frames > 0) wanted.frame_limit = frames;
   made.source_ = TRY(board_source(board, std::move(wanted), clock));
   if (options.record.empty()) return made;
-  recording::RecordingSettings recording;
-  recording.path = options.record;
-  recording.settings = RecordedWith{scene.name, options.scene_seed, options.seed}.text(board);
-  recording.unix_minus_clock_ns = unix_minus(clock);
-  recording.when_full = options.lossless ? recording::WhenFull::wait : recording::WhenFull::skip;
-  made.recorder_ = TRY(recording::RecordingSource::create(std::move(recording), *made.source_, clock));
+  made.recorder_ = TRY(with_recorder({options.record, scene.name, options.scene_seed, options.seed, options.lossless},
+                                     board, *made.source_, clock));
   return made;
 }
 

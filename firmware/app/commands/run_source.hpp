@@ -15,6 +15,26 @@
 
 namespace compueye::firmware {
 
+/// What of an eye's frames is kept, and what the recording's header says of them, for people.
+struct RecordingRequest {
+  std::string path;
+  std::string scene;
+  std::int64_t scene_seed = 0;
+  std::int64_t seed = 0;
+  bool lossless = false;  ///< waits for the disk
+};
+
+/// Whether a recording can be begun at `path`, so that it is known before the set-up and not after. Errors: io (there
+/// is one already), not_found (no such folder).
+[[nodiscard]] hal::Result<void> check_new_recording(const std::string& path);
+
+/// `source` with a recorder; it and `clock` must outlive that. Of an eye on a cable nobody knows the scene. Errors:
+/// those of RecordingSource::create().
+[[nodiscard]] hal::Result<std::unique_ptr<recording::RecordingSource>> with_recorder(const RecordingRequest& request,
+                                                                                     const Board& board,
+                                                                                     hal::SampleSource& source,
+                                                                                     hal::Clock& clock);
+
 /// Where a run's frames come from: the board's eye, simulated or on a cable, or a recording; and, if asked, the file
 /// they go to besides.
 class RunSource {

@@ -1,4 +1,4 @@
-#include "firmware/app/commands/pareto_report.hpp"
+#include "studies/accuracy_and_time/sweep_files.hpp"
 
 #include <doctest/doctest.h>
 
