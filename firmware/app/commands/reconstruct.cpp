@@ -15,11 +15,11 @@
 #include "firmware/app/commands/reconstruct_files.hpp"
 #include "firmware/app/commands/reconstruct_options.hpp"
 #include "firmware/app/commands/reconstruct_report.hpp"
+#include "firmware/eye/ready_eye.hpp"
 #include "firmware/files/response_file.hpp"
 #include "hal/try.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/lambda_by_risk.hpp"
-#include "recon/lambda_rule.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -106,11 +106,11 @@ std::string place_of(const ReconstructOptions& o, const std::string& place) {
 Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatement problem, const Inputs& inputs,
                                     const recon::Progress& progress) {
   const recon::Response& a = *inputs.response;
-  problem.objective.lambda = o.lambda.value_or(0.0);
   problem.plan.max_reweighted = inputs.frames.max_reweighted;
-  if (o.sigma) {
-    problem.objective.lambda = TRY(recon::lambda_by_rule(a, problem.plan.solver, problem.objective.basis, *o.sigma));
-  }
+  // With epsilon or a rank there is no lambda.
+  const std::optional<double> by_hand = o.sigma ? std::nullopt : std::optional(o.lambda.value_or(0.0));
+  problem.objective.lambda =
+      TRY(choose_lambda(a, problem.plan.solver, problem.objective.basis, by_hand, o.sigma.value_or(0.0))).value;
   std::optional<recon::Factor> factor;
   if (o.lambda_from_samples) {
     recon::LambdaByRisk found = TRY(lambda_from_samples(o, problem, inputs, progress));

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <initializer_list>
-#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -19,23 +17,8 @@
 namespace compueye::firmware {
 namespace {
 
-template <class Kind>
-std::vector<std::string_view> names_in(std::span<const recon::Named<Kind>> named) {
-  std::vector<std::string_view> names;
-  for (const recon::Named<Kind>& each : named) names.push_back(each.name);
-  return names;
-}
-
-template <class Kind>
-Kind kind_named(std::span<const recon::Named<Kind>> named, std::string_view name) {
-  for (const recon::Named<Kind>& each : named) {
-    if (each.name == name) return each.kind;
-  }
-  return named.front().kind;  // the option's check has let only these names through
-}
-
 std::vector<std::string_view> operator_words() {
-  std::vector<std::string_view> words = names_in(recon::operator_names());
+  std::vector<std::string_view> words = recon::words_of(recon::operator_names());
   words.insert(words.begin(), "auto");
   return words;
 }
@@ -61,12 +44,14 @@ void add_files(OptionList& options, ReconstructOptions& o) {
 }
 
 void add_problem(OptionList& options, ReconstructOptions& o) {
-  options.add("--solver", o.solver, choices(names_in(recon::solver_names()), "admm"))
+  options.add("--solver", o.solver, choices(recon::words_of(recon::solver_names()), "admm"))
       .type("NAME")
-      .where(one_of(names_in(recon::solver_names())));
-  options.add("--basis", o.basis, "where the picture is sparse: " + choices(names_in(recon::basis_names()), "identity"))
+      .where(one_of(recon::words_of(recon::solver_names())));
+  options
+      .add("--basis", o.basis,
+           "where the picture is sparse: " + choices(recon::words_of(recon::basis_names()), "identity"))
       .type("NAME")
-      .where(one_of(names_in(recon::basis_names())));
+      .where(one_of(recon::words_of(recon::basis_names())));
   options.flag("--nonnegative", o.nonnegative, "constraint x >= 0");
   options.add("--box", o.box, "constraint LO <= x <= HI, such as 0,1")
       .type("LO,HI")
@@ -126,7 +111,7 @@ void add_plan(OptionList& options, ReconstructOptions& o) {
   options
       .add("--operator", o.op,
            "how A is applied: auto (default: the quickest that keeps every digit), " +
-               choices(names_in(recon::operator_names())) + ", which round the response")
+               choices(recon::words_of(recon::operator_names())) + ", which round the response")
       .type("NAME")
       .where(one_of(operator_words()));
   options.add("--threads", o.threads, "that share a frame's work (default 1); the picture is the same")
@@ -166,29 +151,48 @@ std::string constraints_of(recon::SolverKind solver, recon::BasisKind basis) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+bool takes_epsilon(const recon::SolverRow& row) {
+  return row.takes_epsilon;
+}
+bool is_direct(const recon::SolverRow& row) {
+  return row.direct;
+}
+bool has_rank(const recon::SolverRow& row) {
+  return row.rank == recon::RankUse::singular_values;
+}
+
+/// The method as its authors published it, where that is kept for comparison.
+recon::SolverKind published_of(const recon::SolverRow& row) {
+  return recon::solver_named(std::string(row.name) + " as published");
+}
+
 /// The option is not given, or the solver is one of those that take it.
-hal::Result<void> only_with(bool given, std::string_view option, std::string_view meaning, const std::string& solver,
-                            std::initializer_list<std::string_view> takers) {
-  if (!given || std::find(takers.begin(), takers.end(), solver) != takers.end()) return {};
-  return usage(option, fmt::format("is {}, which {} has not; it goes with --solver {} only", meaning, solver,
+hal::Result<void> only_with(bool given, std::string_view option, std::string_view meaning, recon::SolverKind solver,
+                            bool (*takes)(const recon::SolverRow&)) {
+  if (!given || takes(*solver)) return {};
+  std::vector<std::string_view> takers;
+  for (const recon::SolverKind each : recon::solvers()) {
+    if (takes(*each)) takers.push_back(each->name);
+  }
+  return usage(option, fmt::format("is {}, which {} has not; it goes with --solver {} only", meaning, solver->name,
                                    fmt::join(takers, " or ")));
 }
 
-hal::Result<void> check_direct(const ReconstructOptions& o) {
-  if (o.solver != "tikhonov" && o.solver != "tsvd") return {};
+hal::Result<void> check_direct(const ReconstructOptions& o, recon::SolverKind solver) {
+  if (!solver->direct) return {};
   if (o.iterations || o.rho || o.relaxation) {
     return usage("--solver " + o.solver, "solves directly, so --iterations, --rho and --relaxation do nothing with it");
   }
   if (o.lambda && !(*o.lambda > 0.0)) {
     return usage("--lambda",
                  fmt::format("is 0, expected a number above 0 with {}, where it is {}", o.solver,
-                             o.solver == "tsvd" ? "the least square of a singular value" : "the weight of ||x||^2"));
+                             has_rank(*solver) ? "the least square of a singular value" : "the weight of ||x||^2"));
   }
   return {};
 }
 
-hal::Result<void> check_distance(const ReconstructOptions& o) {
-  const bool cut = o.rank && o.solver == "tsvd";
+hal::Result<void> check_distance(const ReconstructOptions& o, recon::SolverKind solver) {
+  const bool cut = o.rank && has_rank(*solver);
   if (o.epsilon || cut) {
     const char* option = o.epsilon ? "--epsilon" : "--rank";
     if (!o.lambda && !o.sigma && !(o.epsilon && cut)) return {};
@@ -197,7 +201,9 @@ hal::Result<void> check_distance(const ReconstructOptions& o) {
   if (o.lambda || o.sigma) return {};
   return usage("--lambda or --sigma",
                "is needed: --sigma takes the noise of one sample in white pixels and finds lambda by rule, --lambda "
-               "sets the weight of the penalty by hand (adm and omp take --epsilon, tsvd --rank instead)");
+               "sets the weight of the penalty by hand (" +
+                   recon::names_of_solvers(takes_epsilon, " and ") + " take --epsilon, " +
+                   recon::names_of_solvers(has_rank, " and ") + " --rank instead)");
 }
 
 /// What goes with what as lines of solver, bases and constraints.
@@ -234,17 +240,26 @@ hal::Result<void> check_pair(const ProblemStatement& problem) {
 /// Options that only some solvers have are given to those only, and exactly one says how far a solver may stay from y:
 /// lambda, sigma, epsilon or rank. Error usage, naming the option and the solvers that take it.
 hal::Result<void> check_solver_options(const ReconstructOptions& o) {
-  TRY(only_with(o.epsilon.has_value(), "--epsilon", "a bound of the residual", o.solver, {"adm", "omp"}));
-  TRY(only_with(o.rank.has_value(), "--rank", "a number of singular values or modes", o.solver, {"tsvd", "pdhg"}));
-  TRY(only_with(o.as_published, "--as-published", "what YALL1 does", o.solver, {"adm"}));
-  TRY(check_direct(o));
-  TRY(only_with(o.rho.has_value(), "--rho", "a penalty or an inverse step", o.solver, {"admm", "adm", "pdhg"}));
-  TRY(only_with(o.relaxation.has_value(), "--relaxation", "over-relaxation", o.solver, {"admm", "cp", "pdhg"}));
-  TRY(only_with(o.start == "warm", "--start warm", "a last frame", o.solver, {"pdhg"}));
-  TRY(only_with(o.reweight.has_value(), "--reweight", "a second pass", o.solver, {"admm"}));
+  using Row = recon::SolverRow;
+  const recon::SolverKind solver = recon::solver_named(o.solver);
+  TRY(only_with(o.epsilon.has_value(), "--epsilon", "a bound of the residual", solver, takes_epsilon));
+  TRY(only_with(o.rank.has_value(), "--rank", "a number of singular values or modes", solver,
+                [](const Row& row) { return row.rank != recon::RankUse::none; }));
+  TRY(only_with(o.as_published, "--as-published", "what YALL1 does", solver,
+                [](const Row& row) { return published_of(row) != nullptr; }));
+  TRY(check_direct(o, solver));
+  TRY(only_with(o.rho.has_value(), "--rho", "a penalty or an inverse step", solver, [](const Row& row) {
+    return row.rho == recon::RhoUse::penalty || row.rho == recon::RhoUse::inverse_step;
+  }));
+  TRY(only_with(o.relaxation.has_value(), "--relaxation", "over-relaxation", solver,
+                [](const Row& row) { return row.relaxes; }));
+  TRY(only_with(o.start == "warm", "--start warm", "a last frame", solver,
+                [](const Row& row) { return row.starts_warm(); }));
+  TRY(only_with(o.reweight.has_value(), "--reweight", "a second pass", solver,
+                [](const Row& row) { return row.reweights; }));
   TRY(need(!o.reweight || o.basis == "identity", "--reweight",
            "is for pictures of few lit pixels, expected --basis identity"));
-  return check_distance(o);
+  return check_distance(o, solver);
 }
 
 }  // namespace
@@ -261,9 +276,12 @@ std::string reconstruct_footer() {
          "non-zeros of Psi x as it takes; tsvd the leading singular values only. One unit of y is one fully seen\n"
          "pixel at white; x is in 0..1 of display white.\n\n"
          "What goes with what:\n" +
-         solver_table_text() +
-         "docs/solvers.md says which to use when. tikhonov and tsvd solve directly: no iterations, rho or relaxation.\n"
-         "One of --lambda, --sigma, --epsilon (adm, omp) and --rank (tsvd), always. Weights are inverse variances\n"
+         solver_table_text() + "docs/solvers.md says which to use when. " +
+         recon::names_of_solvers(is_direct, " and ") +
+         " solve directly: no iterations, rho or relaxation.\n"
+         "One of --lambda, --sigma, --epsilon (" +
+         recon::names_of_solvers(takes_epsilon) + ") and --rank (" + recon::names_of_solvers(has_rank) +
+         "), always. Weights are inverse variances\n"
          "relative to --sigma; with (frames, M) they change from frame to frame. A NaN in y is an error unless its\n"
          "weight is 0.\n"
          "Ctrl-C leaves no files behind. Exit codes: 0 done, 1 failed, 2 wrong usage.\n\n"
@@ -284,7 +302,7 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
   TRY(check_not_input("--out", o.out, o));
   ProblemStatement problem;
   problem.size = *picture_size_from(o.size);
-  problem.objective.basis = kind_named(recon::basis_names(), o.basis);
+  problem.objective.basis = *recon::kind_of(recon::basis_names(), o.basis);
   if (o.nonnegative) problem.objective.constraint = recon::ConstraintKind::nonnegative;
   if (const auto box = interval_from(o.box)) {
     problem.objective.constraint = recon::ConstraintKind::box;
@@ -292,10 +310,10 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
     problem.objective.hi = box->hi;
   }
   problem.objective.epsilon = o.epsilon;
-  problem.plan.solver = kind_named(recon::solver_names(), o.solver);
-  if (o.as_published) problem.plan.solver = recon::solver_named("adm as published");
+  problem.plan.solver = recon::solver_named(o.solver);
+  if (o.as_published) problem.plan.solver = published_of(*problem.plan.solver);
   problem.plan.warm_start = o.start == "warm";
-  if (o.op != "auto") problem.plan.op = kind_named(recon::operator_names(), o.op);
+  problem.plan.op = recon::kind_of(recon::operator_names(), o.op);
   problem.plan.threads = o.threads;
   problem.plan.rank = o.rank.value_or(0);
   problem.plan.l1_reweighting = o.reweight.value_or(0.0);
