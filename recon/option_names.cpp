@@ -16,6 +16,11 @@ constexpr std::array<Named<ConstraintKind>, 3> constraints{{
     {"box", ConstraintKind::box},
 }};
 
+constexpr std::array<Named<Precision>, 2> precisions{{{"f32", Precision::f32}, {"f64", Precision::f64}}};
+
+constexpr std::array<Named<Health>, 3> healths{
+    {{"converged", Health::converged}, {"budget_used", Health::budget_used}, {"invalid", Health::invalid}}};
+
 template <class Kind>
 std::string_view name_in(std::span<const Named<Kind>> names, Kind kind) noexcept {
   for (const Named<Kind>& named : names) {
@@ -48,6 +53,10 @@ std::span<const Named<ConstraintKind>> constraint_names() noexcept {
   return constraints;
 }
 
+std::span<const Named<Precision>> precision_names() noexcept {
+  return precisions;
+}
+
 std::span<const Named<OperatorKind>> operator_names() noexcept {
   static const std::vector<Named<OperatorKind>> names = [] {
     std::vector<Named<OperatorKind>> all;
@@ -67,6 +76,14 @@ std::string_view name(BasisKind kind) noexcept {
 }
 std::string_view name(ConstraintKind kind) noexcept {
   return name_in(constraint_names(), kind);
+}
+
+std::string_view name(Precision precision) noexcept {
+  return name_in(precision_names(), precision);
+}
+
+std::string_view name(Health health) noexcept {
+  return name_in(std::span<const Named<Health>>(healths), health);
 }
 
 std::string_view name(OperatorKind kind) noexcept {

@@ -37,6 +37,7 @@ template <class Kind>
 [[nodiscard]] std::span<const Named<SolverKind>> solver_names() noexcept;
 [[nodiscard]] std::span<const Named<BasisKind>> basis_names() noexcept;
 [[nodiscard]] std::span<const Named<ConstraintKind>> constraint_names() noexcept;
+[[nodiscard]] std::span<const Named<Precision>> precision_names() noexcept;
 /// What Plan::op may be: running-sums stands for every one of them.
 [[nodiscard]] std::span<const Named<OperatorKind>> operator_names() noexcept;
 
@@ -44,6 +45,8 @@ template <class Kind>
 [[nodiscard]] std::string_view name(BasisKind kind) noexcept;
 [[nodiscard]] std::string_view name(ConstraintKind kind) noexcept;
 [[nodiscard]] std::string_view name(OperatorKind kind) noexcept;
+[[nodiscard]] std::string_view name(Precision precision) noexcept;
+[[nodiscard]] std::string_view name(Health health) noexcept;
 
 /// The form of A that a name or a word stands for.
 [[nodiscard]] std::optional<OperatorKind> operator_called(std::string_view name_or_word) noexcept;

@@ -32,9 +32,6 @@ constexpr const char* format_name = "compueye accuracy and time";
 constexpr int format_version = 1;
 
 // The words of the file.
-constexpr std::array<recon::Named<recon::Precision>, 2> precisions{
-    {{"f32", recon::Precision::f32}, {"f64", recon::Precision::f64}}};
-
 std::span<const recon::Named<recon::SolverKind>> words(recon::SolverKind) {
   return recon::solver_names();
 }
@@ -45,7 +42,7 @@ std::span<const recon::Named<recon::ConstraintKind>> words(recon::ConstraintKind
   return recon::constraint_names();
 }
 std::span<const recon::Named<recon::Precision>> words(recon::Precision) {
-  return precisions;
+  return recon::precision_names();
 }
 std::span<const recon::Named<Motion>> words(Motion) {
   return motion_names();

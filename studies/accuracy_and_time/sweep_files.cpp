@@ -69,9 +69,8 @@ std::string quality_cells(const QualitySummary& q) {
 /// One name of an operator has a comma in it.
 std::string point_cells(const Sweep& s, const MeasuredPoint& p) {
   return fmt::format("{},{},{},{},\"{}\",{},{},{},{}", s.board, recon::name(p.curve.solver), recon::name(p.curve.basis),
-                     recon::name(p.curve.constraint), recon::name(p.op),
-                     p.curve.precision == recon::Precision::f64 ? "f64" : "f32", name(p.curve.motion), p.curve.threads,
-                     p.iterations);
+                     recon::name(p.curve.constraint), recon::name(p.op), recon::name(p.curve.precision),
+                     name(p.curve.motion), p.curve.threads, p.iterations);
 }
 
 std::string cost_cells(const MeasuredPoint& p, bool efficient) {

@@ -260,7 +260,7 @@ Figures figures_of(const ComparedRow& row) {
           {"duality_gap", has_gap ? Value(row.info.duality_gap) : Value()},
           {"residual", row.info.residual},
           {"iterations", row.info.iterations},
-          {"health", row.info.health == recon::Health::converged ? "converged" : "budget_used"},
+          {"health", name(row.info.health)},
           {"solve_ms", row.solve_ms},
           {"setup_s", row.setup_s},
           {"workspace_bytes", row.workspace_bytes},

@@ -122,22 +122,6 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatemen
   return made;
 }
 
-ReconstructReport report_of(const ReconstructOptions& o, const recon::Reconstructor& reconstructor,
-                            const FrameInputs& frames) {
-  ReconstructReport report;
-  report.options = o;
-  report.objective = reconstructor.objective();
-  report.plan = reconstructor.plan();
-  report.point = reconstructor.operating_point();
-  report.frames = frames.frames;
-  report.channels = reconstructor.channels();
-  report.seeing_channels = reconstructor.seeing_channels();
-  report.size = {reconstructor.image_rows(), reconstructor.image_cols()};
-  report.table_bytes = reconstructor.table_bytes();
-  report.workspace_bytes = reconstructor.required_bytes();
-  return report;
-}
-
 Result<void> check_health(const recon::FrameInfo& info, std::int64_t frame) {
   if (info.health != recon::Health::invalid) return {};
   return hal::fail(hal::ErrorCode::out_of_range, fmt::format("frame {}", frame),
@@ -187,15 +171,14 @@ Result<void> reconstruct(const ReconstructOptions& o, Session& session) {
   session.end_progress();
   TRY(session.check_stop());
   const recon::Reconstructor reconstructor = TRY(std::move(made));
-  ReconstructReport report = report_of(o, reconstructor, inputs.frames);
-  report.setup_s = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-9;
+  const double setup_s = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-9;
   inputs.response.reset();
 
-  report.records =
+  const std::vector<FrameRecord> records =
       TRY(reconstruct_frames(reconstructor, inputs.frames, inputs.truth ? &*inputs.truth : nullptr, outputs, session));
   TRY(session.seal());
   TRY(outputs.commit());
-  return session.print(report_figures(report));
+  return session.print(figures_of(o, reconstructor, setup_s, records));
 }
 
 Action declare(OptionList& options) {

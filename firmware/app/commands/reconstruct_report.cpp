@@ -1,115 +1,79 @@
 #include "firmware/app/commands/reconstruct_report.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
+#include "firmware/operating_points/measured_points.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_list.hpp"
 
 namespace compueye::firmware {
 namespace {
 
-std::string_view name_of(recon::Precision precision) {
-  return precision == recon::Precision::f64 ? "f64" : "f32";
-}
-std::string_view name_of(recon::Health health) {
-  switch (health) {
-    case recon::Health::converged:
-      return "converged";
-    case recon::Health::budget_used:
-      return "budget_used";
-    case recon::Health::invalid:
-      break;
-  }
-  return "invalid";
-}
-
 template <class Pick>
-std::vector<double> figures(const ReconstructReport& report, Pick&& pick) {
+double median(std::span<const FrameRecord> frames, Pick pick) {
   std::vector<double> values;
-  for (const FrameRecord& record : report.records) values.push_back(pick(record));
-  return values;
-}
-
-double median(std::vector<double> values) {
+  for (const FrameRecord& record : frames) values.push_back(pick(record));
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-template <class Pick>
-double mean(const ReconstructReport& report, Pick&& pick) {
-  const std::vector<double> values = figures(report, std::forward<Pick>(pick));
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+double median(std::span<const FrameRecord> frames, double recon::FrameInfo::*figure) {
+  return median(frames, [figure](const FrameRecord& r) { return r.info.*figure; });
 }
 
-constexpr auto solve_ms = [](const FrameRecord& r) { return r.solve_ms; };
-constexpr auto objective_of = [](const FrameRecord& r) { return r.info.objective; };
-constexpr auto residual_of = [](const FrameRecord& r) { return r.info.residual; };
-constexpr auto gap_of = [](const FrameRecord& r) { return r.info.duality_gap; };
-constexpr auto nmse_of = [](const FrameRecord& r) { return r.quality ? r.quality->nmse : 0.0; };
-constexpr auto psnr_of = [](const FrameRecord& r) { return r.quality ? r.quality->psnr_db : 0.0; };
-constexpr auto ssim_of = [](const FrameRecord& r) { return r.quality ? r.quality->ssim : 0.0; };
-
-std::int64_t count(const ReconstructReport& report, recon::Health health) {
-  return std::count_if(report.records.begin(), report.records.end(),
-                       [&](const FrameRecord& r) { return r.info.health == health; });
+std::int64_t count(std::span<const FrameRecord> frames, recon::Health health) {
+  return std::count_if(frames.begin(), frames.end(), [&](const FrameRecord& r) { return r.info.health == health; });
 }
 
 /// What lambda is, and where it is from.
-std::string lambda_sentence(const ReconstructReport& r) {
-  if (!r.options.sigma) return "{objective.lambda:4} by hand";
-  return r.options.lambda_from_samples ? "{objective.lambda:4} by risk of the first frame, sigma {objective.sigma:4}"
-                                       : "{objective.lambda:4} by rule from sigma {objective.sigma:4}";
+std::string lambda_sentence(const ReconstructOptions& o) {
+  if (!o.sigma) return "{objective.lambda:4} by hand";
+  return o.lambda_from_samples ? "{objective.lambda:4} by risk of the first frame, sigma {objective.sigma:4}"
+                               : "{objective.lambda:4} by rule from sigma {objective.sigma:4}";
 }
 
-std::string lambda_origin(const ReconstructReport& r) {
-  if (!r.options.sigma) return "hand";
-  return r.options.lambda_from_samples ? "risk" : "rule";
+std::string lambda_origin(const ReconstructOptions& o) {
+  if (!o.sigma) return "hand";
+  return o.lambda_from_samples ? "risk" : "rule";
 }
 
 /// What says how far a solver may stay from y, and its value.
-void add_distance(const ReconstructReport& r, Figures& f) {
-  if (r.options.epsilon) {
+void add_distance(const ReconstructOptions& o, const recon::Plan& plan, Figures& f) {
+  if (o.epsilon) {
     f.line("epsilon", "{objective.epsilon:4}");
-  } else if (r.point.solver->rank == recon::RankUse::singular_values) {
-    f.line("rank", r.options.rank ? "{rank:,} by hand" : "{rank:,} singular values: s^2 >= " + lambda_sentence(r));
+  } else if (plan.solver->rank == recon::RankUse::singular_values) {
+    f.line("rank", o.rank ? "{rank:,} by hand" : "{rank:,} singular values: s^2 >= " + lambda_sentence(o));
   } else {
-    f.line("lambda", lambda_sentence(r));
+    f.line("lambda", lambda_sentence(o));
   }
-}
-
-bool rated(const ReconstructReport& r) {
-  return r.records.front().quality.has_value();
 }
 
 Figures point_figures(const recon::OperatingPoint& point) {
   return {{"operator", name(point.op)},
           {"basis", name(point.basis)},
           {"solver", name(point.solver)},
-          {"precision", name_of(point.precision)},
+          {"precision", name(point.precision)},
           {"iterations", point.iterations}};
 }
 
-Figures objective_figures(const ReconstructReport& r) {
-  const bool box = r.objective.constraint == recon::ConstraintKind::box;
-  return {{"constraint", name(r.objective.constraint)},
-          {"lo", box ? Value(r.objective.lo) : Value()},
-          {"hi", box ? Value(r.objective.hi) : Value()},
-          {"lambda", r.objective.lambda},
-          {"epsilon", r.options.epsilon},
-          {"lambda_by", lambda_origin(r)},
-          {"sigma", r.options.sigma}};
+Figures objective_figures(const ReconstructOptions& o, const recon::Objective& objective) {
+  const bool box = objective.constraint == recon::ConstraintKind::box;
+  return {{"constraint", name(objective.constraint)},
+          {"lo", box ? Value(objective.lo) : Value()},
+          {"hi", box ? Value(objective.hi) : Value()},
+          {"lambda", objective.lambda},
+          {"epsilon", o.epsilon},
+          {"lambda_by", lambda_origin(o)},
+          {"sigma", o.sigma}};
 }
 
 Figures frame_figures(const FrameRecord& record) {
   const recon::FrameInfo& info = record.info;
   Figures frame{{"solve_ms", record.solve_ms},
-                {"health", name_of(info.health)},
+                {"health", name(info.health)},
                 {"iterations", info.iterations},
                 {"channels_used", info.channels_used},
                 {"warm", info.warm},
@@ -124,77 +88,80 @@ Figures frame_figures(const FrameRecord& record) {
 }
 
 /// The mean over all frames where there is a truth.
-void add_quality(const ReconstructReport& r, Figures& f) {
-  if (!rated(r)) {
-    f.add("quality", Value());
-    return;
+void add_quality(std::span<const FrameRecord> frames, Figures& f) {
+  std::vector<PictureQuality> pictures;
+  for (const FrameRecord& record : frames) {
+    if (record.quality) pictures.push_back(*record.quality);
   }
-  const std::string note = r.frames > 1 ? " (mean)" : "";
-  f.add("quality", Figures{{"nmse", mean(r, nmse_of)}, {"psnr_db", mean(r, psnr_of)}, {"ssim", mean(r, ssim_of)}});
+  f.add("quality", pictures.empty() ? Value() : value_of(summarise(pictures).mean));
+  if (pictures.empty()) return;
+  const std::string note = frames.size() > 1 ? " (mean)" : "";
   f.line("NMSE", "{quality.nmse:4}" + note).line("PSNR", "{quality.psnr_db:.2} dB" + note);
   f.line("SSIM", "{quality.ssim:.4}" + note);
 }
 
-void add_written(const ReconstructReport& r, Figures& f) {
+void add_written(const ReconstructOptions& o, bool many, Figures& f) {
   const auto name_or_none = [](const std::string& file) { return file.empty() ? Value() : Value(file); };
-  f.add("written", Figures{{"npy", name_or_none(r.options.out)}, {"png", name_or_none(r.options.png)}});
-  if (!r.options.out.empty()) f.line("written", "{written.npy}");
-  if (!r.options.png.empty()) f.line("written", r.frames > 1 ? "{written.png}, numbered by frame" : "{written.png}");
+  f.add("written", Figures{{"npy", name_or_none(o.out)}, {"png", name_or_none(o.png)}});
+  if (!o.out.empty()) f.line("written", "{written.npy}");
+  if (!o.png.empty()) f.line("written", many ? "{written.png}, numbered by frame" : "{written.png}");
 }
 
-void add_problem(const ReconstructReport& r, Figures& f) {
-  const bool factor = recon::uses_factor(r.point.solver);
-  const bool box = r.objective.constraint == recon::ConstraintKind::box;
-  f.add("response", r.options.response).add("samples", r.options.samples);
-  f.add("weights", r.options.weights.empty() ? Value() : Value(r.options.weights));
-  f.add("operating_point", point_figures(r.point), "operating point",
+void add_problem(const ReconstructOptions& o, const recon::Reconstructor& r, Figures& f) {
+  const bool factor = recon::uses_factor(r.operating_point().solver);
+  const bool box = r.objective().constraint == recon::ConstraintKind::box;
+  f.add("response", o.response).add("samples", o.samples);
+  f.add("weights", o.weights.empty() ? Value() : Value(o.weights));
+  f.add("operating_point", point_figures(r.operating_point()), "operating point",
         "{operating_point.solver}, {operating_point.basis} basis, A as {operating_point.operator}, "
         "{operating_point.precision}, {operating_point.iterations} iterations");
-  f.add("objective", objective_figures(r), "constraint",
+  f.add("objective", objective_figures(o, r.objective()), "constraint",
         box ? "box [[{objective.lo}, {objective.hi}]]" : "{objective.constraint}");
-  f.add("rho", factor ? Value(r.plan.rho) : Value()).add("rank", r.plan.rank > 0 ? Value(r.plan.rank) : Value());
-  add_distance(r, f);
+  f.add("rho", factor ? Value(r.plan().rho) : Value()).add("rank", r.plan().rank > 0 ? Value(r.plan().rank) : Value());
+  add_distance(o, r.plan(), f);
   if (factor) f.line("rho", "{rho:4}");
-  f.add("relaxation", r.plan.relaxation).add("max_reweighted", r.plan.max_reweighted);
-  f.add("rows", r.size.rows).add("cols", r.size.cols).add("channels", r.channels);
-  f.add("seeing_channels", r.seeing_channels, "picture",
+  f.add("relaxation", r.plan().relaxation).add("max_reweighted", r.plan().max_reweighted);
+  f.add("rows", r.image_rows()).add("cols", r.image_cols()).add("channels", r.channels());
+  f.add("seeing_channels", r.seeing_channels(), "picture",
         "{rows}x{cols} pixels from {seeing_channels:,} seeing channels of {channels:,}");
 }
 
-void add_gap(const ReconstructReport& r, Figures& f) {
-  if (r.records.front().info.duality_gap < 0.0) {
+void add_gap(std::span<const FrameRecord> frames, Figures& f) {
+  if (frames.front().info.duality_gap < 0.0) {
     f.add("median_duality_gap", Value(), "duality gap", "none: this solver or problem has no dual to bound it by");
     return;
   }
-  f.add(
-      "median_duality_gap", median(figures(r, gap_of)), "duality gap",
-      std::string(r.frames > 1 ? "{:3} (median)" : "{:3}") + ", the most that the objective may lie above its optimum");
+  f.add("median_duality_gap", median(frames, &recon::FrameInfo::duality_gap), "duality gap",
+        std::string(frames.size() > 1 ? "{:3} (median)" : "{:3}") +
+            ", the most that the objective may lie above its optimum");
 }
 
 }  // namespace
 
-Figures report_figures(const ReconstructReport& r) {
-  const std::string of_frames = r.frames > 1 ? " (median)" : "";
+Figures figures_of(const ReconstructOptions& o, const recon::Reconstructor& r, double setup_s,
+                   std::span<const FrameRecord> frames) {
+  const std::string of_frames = frames.size() > 1 ? " (median)" : "";
   Figures f;
-  add_problem(r, f);
-  f.add("frames", r.frames, "frames", "{:,}");
-  f.add("setup_s", r.setup_s, "set-up", "{:duration}");
-  f.add("median_frame_ms", median(figures(r, solve_ms)), "time a frame", "{:3} ms (median, duality gap included)");
-  f.add("table_bytes", r.table_bytes).add("workspace_bytes", r.workspace_bytes);
+  add_problem(o, r, f);
+  f.add("frames", frames.size(), "frames", "{:,}");
+  f.add("setup_s", setup_s, "set-up", "{:duration}");
+  f.add("median_frame_ms", median(frames, [](const FrameRecord& each) { return each.solve_ms; }), "time a frame",
+        "{:3} ms (median, duality gap included)");
+  f.add("table_bytes", r.table_bytes()).add("workspace_bytes", r.required_bytes());
   f.line("memory", "{table_bytes:bytes} tables, {workspace_bytes:bytes} workspace");
-  f.add("median_objective", median(figures(r, objective_of)), "objective", "{:6}" + of_frames);
-  add_gap(r, f);
-  f.add("median_residual", median(figures(r, residual_of)), "residual", "{:4}" + of_frames);
+  f.add("median_objective", median(frames, &recon::FrameInfo::objective), "objective", "{:6}" + of_frames);
+  add_gap(frames, f);
+  f.add("median_residual", median(frames, &recon::FrameInfo::residual), "residual", "{:4}" + of_frames);
   f.add("health",
-        Figures{{"converged", count(r, recon::Health::converged)},
-                {"budget_used", count(r, recon::Health::budget_used)},
-                {"invalid", count(r, recon::Health::invalid)}},
+        Figures{{"converged", count(frames, recon::Health::converged)},
+                {"budget_used", count(frames, recon::Health::budget_used)},
+                {"invalid", count(frames, recon::Health::invalid)}},
         "health", "{health.converged} converged, {health.budget_used} used their budget (normal in real time)");
-  add_quality(r, f);
-  add_written(r, f);
-  std::vector<Figures> frames;
-  for (const FrameRecord& record : r.records) frames.push_back(frame_figures(record));
-  return f.add("per_frame", frames);
+  add_quality(frames, f);
+  add_written(o, frames.size() > 1, f);
+  std::vector<Figures> per_frame;
+  for (const FrameRecord& record : frames) per_frame.push_back(frame_figures(record));
+  return f.add("per_frame", per_frame);
 }
 
 }  // namespace compueye::firmware

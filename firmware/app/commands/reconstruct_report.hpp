@@ -1,8 +1,7 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <vector>
+#include <span>
 
 #include "firmware/app/commands/reconstruct_options.hpp"
 #include "firmware/app/report.hpp"
@@ -18,22 +17,9 @@ struct FrameRecord {
   std::optional<PictureQuality> quality;  ///< with a truth only
 };
 
-/// Everything that `compueye reconstruct` tells of a run.
-struct ReconstructReport {
-  ReconstructOptions options;
-  recon::Objective objective;
-  recon::Plan plan;  ///< every rule resolved
-  recon::OperatingPoint point;
-  std::int64_t frames = 0;
-  int channels = 0;
-  int seeing_channels = 0;
-  PictureSize size;
-  std::uint64_t table_bytes = 0;
-  std::uint64_t workspace_bytes = 0;
-  double setup_s = 0.0;
-  std::vector<FrameRecord> records;  ///< one a frame, at least one
-};
-
-[[nodiscard]] Figures report_figures(const ReconstructReport& report);
+/// Everything that `compueye reconstruct` tells of a run: of `frames`, whose records they are (at least one), with
+/// every rule that `reconstructor` resolved.
+[[nodiscard]] Figures figures_of(const ReconstructOptions& options, const recon::Reconstructor& reconstructor,
+                                 double setup_s, std::span<const FrameRecord> frames);
 
 }  // namespace compueye::firmware

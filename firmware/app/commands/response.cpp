@@ -32,20 +32,6 @@ struct ResponseRequest {
   std::optional<std::uint64_t> as_measured;
 };
 
-struct NominalReport {
-  std::string board;
-  hal::ObjectPlane object;
-  std::optional<std::uint64_t> as_measured;
-  calib::ResponseSummary summary;
-  double seconds = 0.0;
-  std::string out;
-  std::optional<std::uint64_t> file_bytes;  ///< of a regular file
-
-  [[nodiscard]] double density() const {
-    return static_cast<double>(summary.entries) / summary.ommatidia / summary.pixels;
-  }
-};
-
 /// Everything that would refuse the file once it is computed.
 Result<void> try_response_output(const std::string& out, int ommatidia, int pixels) {
   if (out.empty()) return {};
@@ -53,34 +39,29 @@ Result<void> try_response_output(const std::string& out, int ommatidia, int pixe
   return try_output(out);
 }
 
-Figures report_of(const NominalReport& r) {
-  const calib::ResponseSummary& s = r.summary;
+Figures figures_of(const ResponseRequest& o, const Board& board, const calib::ResponseSummary& s) {
+  const hal::ObjectPlane& object = board.object;
   Figures f;
-  f.add("board", r.board, "board").add("distance_mm", r.object.distance_mm).add("as_measured", r.as_measured);
-  f.add("ommatidia", s.ommatidia).add("pixels", s.pixels).add("rows", r.object.rows).add("cols", r.object.cols);
+  f.add("board", board.name, "board").add("distance_mm", object.distance_mm).add("as_measured", o.as_measured);
+  f.add("ommatidia", s.ommatidia).add("pixels", s.pixels).add("rows", object.rows).add("cols", object.cols);
   f.line("response", "{ommatidia:,} ommatidia x {pixels:,} pixels ({rows}x{cols}) at {distance_mm} mm");
-  if (r.as_measured) f.line("as measured", "with build errors of seed {as_measured}");
-  f.add("entries", s.entries).add("density", r.density());
+  if (o.as_measured) f.line("as measured", "with build errors of seed {as_measured}");
+  f.add("entries", s.entries).add("density", static_cast<double>(s.entries) / s.ommatidia / s.pixels);
   f.line("entries", "{entries:,} ({density:3%})");
   f.add("blind_rows", s.blind_rows, "blind rows", "{:,}");
   f.add("support", Figures{{"min", s.support_min}, {"median", s.support_median}, {"max", s.support_max}}, "pixels seen",
         "{support.min:,} to {support.max:,} a row, median {support.median}");
   f.add("seen_pixels", s.seen_pixels);
   f.add("unseen_pixels", s.unseen_pixels(), "unseen pixels", "{:,}");
-  f.add("most_seen", s.most_seen, "rows seeing a pixel", "at most {:,}");
-  f.add("seconds", r.seconds, "time", "{:duration}");
-  f.add("written", r.out.empty() ? Value() : Value(r.out)).add("file_bytes", r.file_bytes);
-  return r.out.empty() ? f : f.line("written", "{written}[, {file_bytes:bytes}]");
+  return f.add("most_seen", s.most_seen, "rows seeing a pixel", "at most {:,}");
 }
 
-Result<void> write(const std::string& out, const recon::Response& response, NominalReport& report) {
-  if (out.empty()) return {};
-  TRY(write_response(out, response));
+Figures& add_written(const std::string& out, Figures& f) {
   std::error_code error;
-  const auto size = std::filesystem::file_size(out, error);
-  if (!error) report.file_bytes = size;
-  report.out = out;
-  return {};
+  const auto size = out.empty() ? 0 : std::filesystem::file_size(out, error);
+  f.add("written", out.empty() ? Value() : Value(out));
+  f.add("file_bytes", out.empty() || error ? Value() : Value(size));  // of a regular file
+  return out.empty() ? f : f.line("written", "{written}[, {file_bytes:bytes}]");
 }
 
 /// The response that a board's geometry gives, or one as a calibration of such an eye might find it, as a file, and its
@@ -98,17 +79,12 @@ Result<void> write_nominal(const ResponseRequest& o, Session& session) {
   session.end_progress();
   TRY(session.check_stop());
   const recon::Response response = TRY(std::move(made));
-  NominalReport report{board.name,
-                       board.object,
-                       o.as_measured,
-                       calib::summarise(response),
-                       static_cast<double>(session.clock().now_ns() - began_ns) * 1e-9,
-                       {},
-                       {}};
-  TRY(write(o.out, response, report));
+  Figures figures = figures_of(o, board, calib::summarise(response));
+  figures.add("seconds", static_cast<double>(session.clock().now_ns() - began_ns) * 1e-9, "time", "{:duration}");
+  if (!o.out.empty()) TRY(write_response(o.out, response));
   // A stop that comes this late finds the file complete.
   static_cast<void>(session.seal());
-  return session.print(report_of(report));
+  return session.print(add_written(o.out, figures));
 }
 
 Action declare(OptionList& options) {

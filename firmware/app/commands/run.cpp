@@ -210,15 +210,11 @@ Result<void> BoardRun::run_with(FrameSolver& solver, hal::FrameSink& sink, Frame
 Result<void> BoardRun::measure_quality() {
   if (keeper_->kept() == 0) return {};
   const auto view = [&](std::span<const float> pixels) { return recon::PictureView(pixels, truth_.rows, truth_.cols); };
-  PictureQuality mean;
+  std::vector<PictureQuality> pictures;
   for (std::size_t i = 0; i < keeper_->kept(); ++i) {
-    const PictureQuality quality = TRY(quality_of(view(keeper_->picture(i)), truth_));
-    mean.nmse += quality.nmse;
-    mean.psnr_db += quality.psnr_db;
-    mean.ssim += quality.ssim;
+    pictures.push_back(TRY(quality_of(view(keeper_->picture(i)), truth_)));
   }
-  const auto count = static_cast<double>(keeper_->kept());
-  report_.quality = PictureQuality{mean.nmse / count, mean.psnr_db / count, mean.ssim / count};
+  report_.quality = summarise(pictures).mean;
   report_.measured = keeper_->kept();
   report_.last_quality = TRY(quality_of(view(keeper_->last()), truth_));
   return {};

@@ -39,12 +39,11 @@ Figures eye_figures(const Board& board, const ReadyEye& eye, const std::string& 
 Figures point_figures(const ReadyEye& eye) {
   const recon::OperatingPoint point = eye.reconstructor().operating_point();
   const LambdaChoice& lambda = eye.lambda();
-  return {
-      {"solver", name(point.solver)},         {"basis", name(point.basis)},
-      {"operator", name(point.op)},           {"precision", point.precision == recon::Precision::f32 ? "f32" : "f64"},
-      {"iterations", point.iterations},       {"lambda", lambda.value},
-      {"lambda_by_rule", lambda.by_rule},     {"sigma", lambda.by_rule ? Value(lambda.sigma) : Value()},
-      {"rho", eye.reconstructor().plan().rho}};
+  return {{"solver", name(point.solver)},         {"basis", name(point.basis)},
+          {"operator", name(point.op)},           {"precision", name(point.precision)},
+          {"iterations", point.iterations},       {"lambda", lambda.value},
+          {"lambda_by_rule", lambda.by_rule},     {"sigma", lambda.by_rule ? Value(lambda.sigma) : Value()},
+          {"rho", eye.reconstructor().plan().rho}};
 }
 
 Figures times_figures(const TimeStatistics& times) {
