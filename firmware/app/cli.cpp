@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -53,14 +54,20 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-std::string unknown(std::string_view what, const std::string& given, const std::vector<std::string>& known) {
+/// What was given at which place, and what is wrong with it.
+struct Complaint {
+  std::string place, sentence;
+};
+
+Complaint unknown(std::string_view what, const std::string& given, const std::vector<std::string>& known) {
   const std::vector<std::string_view> views(known.begin(), known.end());
   const std::string name = given.substr(0, given.find('='));
-  return "'" + excerpt(name) + "' is not " + std::string(what) + suggestion(name, views);
+  return {excerpt(name), "is not " + std::string(what) + suggestion(name, views)};
 }
 
-/// Empty when every option and command is known.
-std::string unknown_name(const CLI::App& app, const CLI::App& command, std::span<const Command* const> commands) {
+/// Nothing when every option and command is known.
+std::optional<Complaint> unknown_name(const CLI::App& app, const CLI::App& command,
+                                      std::span<const Command* const> commands) {
   const std::vector<std::string> extras = app.remaining(true);
   const auto dashed = [](const std::string& word) { return word.starts_with("-"); };
   const auto word = std::find_if_not(extras.begin(), extras.end(), dashed);
@@ -70,7 +77,27 @@ std::string unknown_name(const CLI::App& app, const CLI::App& command, std::span
     return unknown("a command", *word, names);
   }
   const auto option = std::find_if(extras.begin(), extras.end(), dashed);
-  return option == extras.end() ? std::string() : unknown("an option", *option, option_names(command));
+  if (option == extras.end()) return std::nullopt;
+  return unknown("an option", *option, option_names(command));
+}
+
+/// CLI11 says which option it means in its sentence only, and mostly begins with it: "--lambda excludes --sigma".
+Complaint complaint_of(std::string_view sentence, const CLI::App& command) {
+  std::string place;
+  std::size_t first = std::string_view::npos;
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    const std::size_t at = sentence.find(name);
+    // Of two that begin alike the longer one is meant.
+    if (at == std::string_view::npos || at > first || (at == first && name.size() < place.size())) continue;
+    place = name;
+    first = at;
+  }
+  if (first == 0) {
+    sentence.remove_prefix(place.size());
+    sentence.remove_prefix(std::min(sentence.find_first_not_of(": "), sentence.size()));
+  }
+  return {place, std::string(sentence)};
 }
 
 hal::Error usage_error(const CLI::App& app, const CLI::ParseError& error, std::span<const Command* const> commands) {
@@ -80,10 +107,10 @@ hal::Error usage_error(const CLI::App& app, const CLI::ParseError& error, std::s
     command = sub;
     path += " " + sub->get_name();
   }
-  std::string sentence = unknown_name(app, *command, commands);
-  if (sentence.empty()) sentence = error.what();
+  const auto stranger = unknown_name(app, *command, commands);
+  auto [place, sentence] = stranger ? *stranger : complaint_of(error.what(), *command);
   std::replace(sentence.begin(), sentence.end(), '\n', ' ');
-  return {hal::ErrorCode::usage, {}, sentence + "; see " + path + " --help"};
+  return {hal::ErrorCode::usage, place, sentence + "; see " + path + " --help"};
 }
 
 /// --help and --version end the parsing as if they were errors.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <system_error>
+#include <type_traits>
 
 #include "firmware/eye/settings/setting.hpp"
 #include "firmware/text/words.hpp"
@@ -25,6 +26,31 @@ std::optional<T> whole(std::string_view text) noexcept {
   return value;
 }
 
+template <class T>
+T held_by(T*);
+template <class T>
+T held_by(std::optional<T>*);
+template <class T>
+T held_by(std::vector<T>*);
+
+/// The text is a number where the target takes one.
+Check readable(const Target& target) {
+  return std::visit(
+      [](auto* value) {
+        using T = decltype(held_by(value));
+        if constexpr (std::is_same_v<T, std::string>) {
+          return Check();
+        } else if constexpr (std::is_same_v<T, double>) {
+          return number_where([](double) { return true; }, "a finite number");
+        } else {
+          return Check([](const std::string& text) {
+            return whole<T>(text) ? "" : fmt::format("is '{}', expected a whole number", excerpt(text));
+          });
+        }
+      },
+      target);
+}
+
 struct Halves {
   std::string_view first, second;
 };
@@ -33,6 +59,19 @@ std::optional<Halves> split(std::string_view text, char at) noexcept {
   const auto place = text.find(at);
   if (place == std::string_view::npos) return std::nullopt;
   return Halves{text.substr(0, place), text.substr(place + 1)};
+}
+
+/// Who has no board begins with what a Board is by itself.
+std::string meaning_of(const Setting& setting, bool of_board) {
+  const auto usual = of_board ? std::nullopt : setting.show(Board());
+  std::string text(setting.meaning);
+  if (!setting.choices.empty()) {
+    const auto* word = usual ? std::get_if<std::string>(&*usual) : nullptr;
+    text += ": " + choices(setting.choices, word != nullptr ? *word : std::string());
+  } else if (usual) {
+    text += " (default " + quoted(*usual) + ")";
+  }
+  return of_board ? text + " (overrules the board's)" : text;
 }
 
 }  // namespace
@@ -50,9 +89,10 @@ hal::Result<void> Overrides::apply(Board& board) const {
 }
 
 void OptionList::settings(std::string_view command, Overrides& overrides) {
+  const bool of_board =
+      std::any_of(rows_.begin(), rows_.end(), [](const Option& row) { return row.name == "--board"; });
   for (const Setting* setting : settings_for(command)) {
-    add(std::string(setting->option), overrides.texts_[setting],
-        std::string(setting->meaning) + " (overrules the board's)")
+    add(std::string(setting->option), overrides.texts_[setting], meaning_of(*setting, of_board))
         .type(std::string(setting->value_name))
         .where([setting](const std::string& text) {
           const auto value = value_from(*setting, text, setting->option);
@@ -66,7 +106,9 @@ Option& OptionList::at(std::string_view name) {
 }
 
 Option& OptionList::put(std::string name, std::variant<Target, Switch> target, std::string meaning) {
-  return rows_.emplace_back(Option{std::move(name), target, std::move(meaning), {}, {}, {}, {}, false});
+  const auto* value = std::get_if<Target>(&target);
+  Check check = value != nullptr ? readable(*value) : Check();
+  return rows_.emplace_back(Option{std::move(name), target, std::move(meaning), {}, std::move(check), {}, {}, false});
 }
 
 Check number_where(std::function<bool(double)> accepts, std::string expected) {

@@ -28,18 +28,12 @@ constexpr int most_for_whole_spectrum = 2000;  // rows of a parity class, whose 
 constexpr std::size_t most_repeats = 15;
 constexpr double most_timing_ms = 500.0;
 
-int threads_of(const Board& board, const CompareOptions& options) {
-  return options.threads ? static_cast<int>(*options.threads) : board.plan.threads;
-}
-
 /// Runs the contenders one after the other; factors go from one to the next and, for the next time, into the board's
 /// cache.
 class Runner {
  public:
-  Runner(const Board& board, const CompareOptions& options, const CompareSamples& samples, const hal::Clock& clock,
-         const recon::Progress& progress)
+  Runner(const Board& board, const CompareSamples& samples, const hal::Clock& clock, const recon::Progress& progress)
       : board_(board),
-        options_(options),
         samples_(samples),
         clock_(clock),
         progress_(progress),
@@ -67,10 +61,9 @@ class Runner {
     recon::Plan plan = board_.plan;
     plan.solver = contender.solver;
     plan.warm_start = false;
-    if (!recon::uses_factor(contender.solver))
+    if (!recon::uses_factor(contender.solver) && !board_.overrules("reconstruction", "iterations")) {
       plan.iterations = std::min(more_without_factor * plan.iterations, 1'000'000);
-    if (options_.iterations) plan.iterations = static_cast<int>(*options_.iterations);
-    plan.threads = threads_of(board_, options_);
+    }
     // The board's rho was chosen for the board's metric, and is no step of pdhg.
     const bool penalised = contender.solver->rho == recon::RhoUse::penalty;
     if (!penalised || recon::metric_of(contender.basis) != recon::metric_of(board_.objective.basis)) plan.rho = 0.0;
@@ -84,9 +77,9 @@ class Runner {
   /// By hand, else the board's for the board's own basis, else by rule.
   [[nodiscard]] Result<double> lambda_of(const Contender& contender) const {
     const bool boards = contender.basis == board_.objective.basis && contender.solver->minimises;
-    const std::optional<double> of_board = boards && !options_.sigma ? board_.lambda : std::nullopt;
+    const bool stated = boards || board_.overrules("reconstruction", "lambda");
     return TRY(choose_lambda(maker_.response(), contender.solver, contender.basis,
-                             options_.lambda ? options_.lambda : of_board, samples_.sigma))
+                             stated ? board_.lambda : std::nullopt, board_.noise_sigma()))
         .value;
   }
 
@@ -113,7 +106,6 @@ class Runner {
   }
 
   const Board& board_;
-  const CompareOptions& options_;
   const CompareSamples& samples_;
   const hal::Clock& clock_;
   const recon::Progress& progress_;
@@ -154,12 +146,12 @@ Result<Comparison> head_of(const Board& board, const CompareOptions& options, Co
   head.board = board.name;
   head.scene = samples.scene;
   head.exact = options.exact;
-  head.sigma = samples.sigma;
+  head.sigma = board.noise_sigma();
   head.seed = options.seed;
   head.scene_seed = options.scene_seed;
   head.channels = samples.response.rows();
   head.seeing = static_cast<int>(samples.response.seeing_rows().size());
-  head.threads = threads_of(board, options);
+  head.threads = board.plan.threads;
   if (samples.conventional) {
     head.conventional_quality = TRY(quality_of(*samples.conventional, samples.truth));
   } else {
@@ -170,13 +162,9 @@ Result<Comparison> head_of(const Board& board, const CompareOptions& options, Co
 
 }  // namespace
 
-Result<std::vector<Contender>> contenders(const CompareOptions& options, recon::ConstraintKind of_board) {
+Result<std::vector<Contender>> contenders(const CompareOptions& options, recon::ConstraintKind wanted) {
   const auto solvers = TRY(kinds_of("--solvers", options.solvers, recon::solver_names()));
   const auto bases = TRY(kinds_of("--bases", options.bases, recon::basis_names()));
-  recon::ConstraintKind wanted = of_board;
-  if (!options.constraint.empty()) {
-    wanted = TRY(kinds_of("--constraint", {options.constraint}, recon::constraint_names())).front();
-  }
   std::vector<Contender> all;
   for (const recon::BasisKind basis : bases) {
     for (const recon::SolverKind solver : solvers) {
@@ -202,7 +190,7 @@ Result<Comparison> compare(const Board& board, const CompareOptions& options, co
   const recon::Progress overall = [&](std::string_view, double, double) {
     return progress("comparing", done, static_cast<double>(all.size()));
   };
-  Runner runner(board, options, samples, clock, overall);
+  Runner runner(board, samples, clock, overall);
   std::optional<hal::Error> first_failure;
   for (const Contender& contender : all) {
     if (takes_too_long(contender, options, samples.response)) {

@@ -20,16 +20,11 @@ namespace compueye::firmware {
 struct CompareOptions {
   std::string scene;  ///< empty: the board's
   std::int64_t scene_seed = 0;
-  std::int64_t seed = 0;                   ///< of the noise
-  bool exact = false;                      ///< y = A x + n instead of the simulated eye
-  std::string response;                    ///< file of another A for the board's eye; empty: the nominal one
-  std::optional<double> sigma;             ///< of one sample, in white pixels, >= 0; absent: the board's
-  std::optional<double> lambda;            ///< >= 0, for every contender; absent: by rule
-  std::optional<std::int64_t> iterations;  ///< 1 .. 1e6, of every contender; absent: see compare()
-  std::optional<std::int64_t> threads;     ///< 1 .. recon::WorkerThreads::most; absent: the board's
-  std::vector<std::string> solvers;        ///< empty: all
-  std::vector<std::string> bases;          ///< empty: all
-  std::string constraint;                  ///< empty: the board's
+  std::int64_t seed = 0;             ///< of the noise
+  bool exact = false;                ///< y = A x + n instead of the simulated eye
+  std::string response;              ///< file of another A for the board's eye; empty: the nominal one
+  std::vector<std::string> solvers;  ///< empty: all
+  std::vector<std::string> bases;    ///< empty: all
 };
 
 /// A solver with a basis and constraint it takes.
@@ -39,10 +34,10 @@ struct Contender {
   recon::ConstraintKind constraint = recon::ConstraintKind::none;
 };
 
-/// Everything that goes together, by basis and then by solver: with `constraint` where the pair takes it, else with
-/// none. Error usage for a name that does not exist, or when nothing is left.
+/// Everything that goes together, by basis and then by solver: with `wanted` where the pair takes it, else with none.
+/// Error usage for a name that does not exist, or when nothing is left.
 [[nodiscard]] hal::Result<std::vector<Contender>> contenders(const CompareOptions& options,
-                                                             recon::ConstraintKind of_board);
+                                                             recon::ConstraintKind wanted);
 
 /// What one contender made of the samples.
 struct ComparedRow {
@@ -80,11 +75,11 @@ struct Comparison {
   std::vector<std::string> notes;    ///< sentences for the user
 };
 
-/// Takes one frame of samples and solves it in every way: iterations are the options', else the board's for solvers
-/// that have a factor and ten times that for the others; lambda is the options', else the board's for its own basis,
-/// else by rule. A stop (`progress` returning false) keeps the rows that are done; a contender that cannot be set up or
-/// solved becomes a note. Errors: those of contenders() and take_samples(); when there is no row at all that of the
-/// first contender, or interrupted.
+/// Takes one frame of samples and solves it in every way: iterations are those of the board where a command line states
+/// them (Board::overrules()), else the board's for solvers that have a factor and ten times that for the others; lambda
+/// likewise the command line's, else the board's for its own basis, else by rule. A stop (`progress` returning false)
+/// keeps the rows that are done; a contender that cannot be set up or solved becomes a note. Errors: those of
+/// contenders() and take_samples(); when there is no row at all that of the first contender, or interrupted.
 [[nodiscard]] hal::Result<Comparison> compare(const Board& board, const CompareOptions& options,
                                               const hal::Clock& clock, const recon::Progress& progress);
 

@@ -36,13 +36,13 @@ Result<recon::Response> response_of(const Board& board, const CompareOptions& o,
 }
 
 /// y = A x + n on the truth's own pixels.
-void take_exact(std::uint64_t seed, CompareSamples& samples) {
+void take_exact(double sigma, std::uint64_t seed, CompareSamples& samples) {
   const std::vector<double> x(samples.truth.pixels.begin(), samples.truth.pixels.end());
   std::vector<double> y(static_cast<std::size_t>(samples.response.rows()));
   samples.response.forward(x, y);
   for (std::size_t m = 0; m < y.size(); ++m) {
     sim::RandomStream stream({seed, sim::Effect::read_noise, 0, static_cast<std::uint32_t>(m)});
-    samples.y.push_back(static_cast<float>(y[m] + samples.sigma * stream.gaussian()));
+    samples.y.push_back(static_cast<float>(y[m] + sigma * stream.gaussian()));
   }
   samples.weights.assign(samples.y.size(), 1.0F);
 }
@@ -68,11 +68,10 @@ Result<CompareSamples> take_samples(const Board& board, const CompareOptions& o,
   std::vector<std::uint8_t> sees(static_cast<std::size_t>(board.eye.ommatidia()), 0);
   for (const std::int32_t m : response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
   if (!board.sensor.dead.empty()) response = response.without_rows(board.sensor.dead);
-  CompareSamples samples{
-      scene.name, std::move(truth), std::move(response), o.sigma.value_or(board.noise_sigma()), {}, {}, {}};
+  CompareSamples samples{scene.name, std::move(truth), std::move(response), {}, {}, {}};
   const auto seed = static_cast<std::uint64_t>(o.seed);
   if (o.exact) {
-    take_exact(seed, samples);
+    take_exact(board.noise_sigma(), seed, samples);
   } else {
     TRY(take_from_eye(board, scene, seed, sees, samples));
   }

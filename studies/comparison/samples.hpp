@@ -17,7 +17,6 @@ struct CompareSamples {
   std::string scene;
   hal::Image truth;
   recon::Response response;  ///< dead ommatidia with empty rows
-  double sigma = 0.0;        ///< of one sample, for lambda by rule
   std::vector<float> y;      ///< M
   std::vector<float> weights;
   std::optional<hal::Image> conventional;  ///< what the conventional eye shows; none for a lattice that has none

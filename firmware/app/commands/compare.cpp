@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,7 +14,6 @@
 #include "firmware/files/atomic_file.hpp"
 #include "hal/try.hpp"
 #include "recon/solver_list.hpp"
-#include "recon/worker_threads.hpp"
 #include "studies/comparison/comparison.hpp"
 #include "studies/comparison/comparison_files.hpp"
 
@@ -28,25 +25,15 @@ using hal::Result;
 /// What `compueye compare` was asked for.
 struct CompareRequest : CompareOptions {
   std::string board;
-  std::string sheet;  ///< empty: none
-  std::string csv;    ///< empty: none
+  Overrides overrides;  ///< constraint, iterations, lambda, sigma, threads
+  std::string sheet;    ///< empty: none
+  std::string csv;      ///< empty: none
 };
-
-Result<void> not_negative(const char* option, const std::optional<double>& value) {
-  const bool ok = !value || (std::isfinite(*value) && *value >= 0.0 && *value <= 1e12);
-  return need(ok, option, fmt::format("is {}, expected a number from 0 to 1e12", value.value_or(0.0)));
-}
 
 Result<void> check(const CompareRequest& o) {
   TRY(need(!o.board.empty(), "--board", "is missing, for example --board boards/sim-8x8"));
   TRY(need(o.seed >= 0, "--seed", "is negative, expected 0 or more"));
-  TRY(need(o.scene_seed >= 0, "--scene-seed", "is negative, expected 0 or more"));
-  TRY(not_negative("--sigma", o.sigma));
-  TRY(not_negative("--lambda", o.lambda));
-  TRY(need(!o.iterations || (*o.iterations >= 1 && *o.iterations <= 1'000'000), "--iterations",
-           fmt::format("is {}, expected 1 to 1000000", o.iterations.value_or(0))));
-  return need(!o.threads || (*o.threads >= 1 && *o.threads <= recon::WorkerThreads::most), "--threads",
-              fmt::format("is {}, expected 1 to {}", o.threads.value_or(0), recon::WorkerThreads::most));
+  return need(o.scene_seed >= 0, "--scene-seed", "is negative, expected 0 or more");
 }
 
 /// What the table shows of a row beside its figures.
@@ -140,7 +127,8 @@ Figures report_of(const Comparison& c) {
 /// printed and written, and the command succeeds when there is any.
 Result<void> run_compare(const CompareRequest& o, Session& session) {
   TRY(check(o));
-  const Board board = TRY(load_board(o.board));
+  Board board = TRY(load_board(o.board));
+  TRY(o.overrides.apply(board));
   static_cast<void>(TRY(contenders(o, board.objective.constraint)));
   TRY(try_output(o.sheet));
   TRY(try_output(o.csv));
@@ -165,20 +153,15 @@ void add_samples(OptionList& options, CompareRequest& o) {
                "y = A x + n with the very A that is inverted, instead of the simulated eye: an inverse crime, for "
                "figures that others published so");
   options.add("--response", o.response, "another A for the board's eye, .npy or .mtx (default: the nominal one)");
-  options.add("--sigma", o.sigma,
-              "noise of a sample in white pixels, for lambda by rule (default: the board's); with --exact also "
-              "the noise that is added");
 }
 
 void add_contenders(OptionList& options, CompareRequest& o) {
   options.add("--solvers", o.solvers, "only these, such as admm,cp (default: all)");
   options.add("--bases", o.bases, "only these, such as dct,tv (default: all)");
-  options.add("--constraint", o.constraint, "none, nonnegative or box (default: the board's)");
-  options.add("--iterations", o.iterations,
-              "of every solver (default: the board's for admm and adm, which have a factor, ten times that for "
-              "the others)");
-  options.add("--threads", o.threads, "that share a frame's work (default: the board's); the same pictures");
-  options.add("--lambda", o.lambda, "for every solver and basis (default: by rule, from sigma)");
+  options.settings("compare", o.overrides);
+  options.at("--iterations").meaning += "; without it, solvers that have no factor get ten times the board's";
+  options.at("--lambda").meaning += ", for every solver and basis";
+  options.at("--sigma").meaning += "; with --exact also the noise that is added";
 }
 
 std::string footer() {

@@ -31,8 +31,8 @@ struct RecordRequest {
   std::string scene;  ///< empty: the board's
   std::int64_t scene_seed = 0;
   std::int64_t seed = 0;
-  std::optional<double> distance_mm;
   std::optional<double> scene_distance_mm;
+  Overrides overrides;    ///< distance
   bool lossless = false;  ///< frames as fast as they can be made and written, instead of at the board's rate
 };
 
@@ -47,7 +47,6 @@ Result<void> check(const RecordRequest& o) {
            fmt::format("is {}, expected a number above 0 and at most 1e8", time)));
   TRY(need(o.seed >= 0, "--seed", "is negative, expected 0 or more"));
   TRY(need(o.scene_seed >= 0, "--scene-seed", "is negative, expected 0 or more"));
-  TRY(need_length("--distance", o.distance_mm));
   return need_length("--scene-distance", o.scene_distance_mm);
 }
 
@@ -132,7 +131,7 @@ Result<void> record(const RecordRequest& o, Session& session) {
   TRY(check(o));
   Board board = TRY(load_board(o.board));
   TRY(check_new_recording(o.out));
-  if (o.distance_mm) board.object.distance_mm = *o.distance_mm;
+  TRY(o.overrides.apply(board));
   sim::Scene scene = TRY(choose_scene(board, {o.scene, static_cast<std::uint64_t>(o.scene_seed), o.scene_distance_mm}));
   const std::string scene_name = board.source.simulated() ? scene.name : "an unknown scene";
   const auto eye = TRY(board_source(
@@ -155,7 +154,7 @@ Action declare(OptionList& options) {
   options.add("--scene", o->scene, "a built-in scene or a PNG file (default: the board's)");
   options.add("--scene-seed", o->scene_seed, "which drawing of a built-in scene (default 0)");
   options.add("--seed", o->seed, "of the noise (default 0); the same seed gives the same samples");
-  options.add("--distance", o->distance_mm, "of the object from the lens tip in mm");
+  options.settings("record", o->overrides);
   options.add("--scene-distance", o->scene_distance_mm, "of the scene alone in mm");
   options.flag("--lossless", o->lossless,
                "as fast as frames can be made and written, each waited for (default: at the board's rate)");

@@ -26,8 +26,8 @@ using hal::Result;
 /// What `compueye response` was asked for.
 struct ResponseRequest {
   std::string board;
-  std::string out;                    ///< .mtx or .npy; empty: only the figures
-  std::optional<double> distance_mm;  ///< absent: the board's
+  std::string out;      ///< .mtx or .npy; empty: only the figures
+  Overrides overrides;  ///< distance
   /// Seed of a calib::plausible_response(); absent: the nominal one.
   std::optional<std::uint64_t> as_measured;
 };
@@ -68,7 +68,7 @@ Figures& add_written(const std::string& out, Figures& f) {
 /// figures on stdout.
 Result<void> write_nominal(const ResponseRequest& o, Session& session) {
   Board board = TRY(load_board(o.board));
-  board.object.distance_mm = o.distance_mm.value_or(board.object.distance_mm);
+  TRY(o.overrides.apply(board));
   TRY(try_response_output(o.out, board.eye.ommatidia(), board.object.pixels()));
 
   if (!o.out.empty()) session.guard_output(o.out);
@@ -94,9 +94,7 @@ Action declare(OptionList& options) {
       .add("--out", o->out,
            "A as .mtx (sparse, exact) or .npy (dense float32, at most 1 GiB); without it only the figures")
       .type("FILE");
-  options.add("--distance", o->distance_mm, "of the object plane from the lens tip (default: the board's)")
-      .type("MM")
-      .where(number_where([](double v) { return v > 0.0; }, "a finite number of mm above 0"));
+  options.settings("response", o->overrides);
   options
       .add("--as-measured", o->as_measured,
            "not as drawn but as a calibration of a built eye might find it, see below; same seed, same eye")

@@ -36,8 +36,8 @@ struct SimulateRequest {
   std::string out;  ///< y.npy
   std::int64_t frames = 1;
   std::int64_t seed = 0;
-  std::optional<double> distance_mm;
   std::optional<double> scene_distance_mm;
+  Overrides overrides;  ///< distance
   bool noise_free = false;
   bool codes = false;
   std::string truth;
@@ -49,7 +49,6 @@ Result<void> check(const SimulateRequest& o) {
   TRY(need(o.frames >= 1 && o.frames <= 1'000'000, "--frames", fmt::format("is {}, expected 1 to 1000000", o.frames)));
   TRY(need(o.seed >= 0, "--seed", "is negative, expected 0 or more"));
   TRY(need(o.scene_seed >= 0, "--scene-seed", "is negative, expected 0 or more"));
-  TRY(need_length("--distance", o.distance_mm));
   TRY(need_length("--scene-distance", o.scene_distance_mm));
   return need(!o.out.empty() || !o.truth.empty() || o.explain, "--out",
               "is missing: name the .npy file for the samples, for example --out y.npy");
@@ -168,7 +167,7 @@ Figures report_of(const Board& board, const sim::Scene& scene, const Samples& sa
 Result<void> simulate(const SimulateRequest& request, Session& session) {
   TRY(check(request));
   Board board = TRY(load_board(request.board));
-  if (request.distance_mm) board.object.distance_mm = *request.distance_mm;
+  TRY(request.overrides.apply(board));
   const sim::Scene scene = TRY(
       choose_scene(board, {request.scene, static_cast<std::uint64_t>(request.scene_seed), request.scene_distance_mm}));
   const Samples samples = TRY(take(board, scene, request));
@@ -185,7 +184,7 @@ Action declare(OptionList& options) {
   options.add("--out", o->out, ".npy file for the samples, (M,) or (frames, M)");
   options.add("--frames", o->frames, "how many (default 1)");
   options.add("--seed", o->seed, "of the noise (default 0)");
-  options.add("--distance", o->distance_mm, "of the object plane and the scene on it, mm from the lens tip");
+  options.settings("simulate", o->overrides);
   options.add("--scene-distance", o->scene_distance_mm, "of the scene alone, mm from the lens tip");
   options.flag("--noise-free", o->noise_free, "exact signals: no read noise, no rounding (with --codes: rounded)");
   options.flag("--codes", o->codes, "raw codes instead of corrected samples");

@@ -86,7 +86,9 @@ void add_weight(std::vector<Setting>& all) {
                             "+ 1/12)")
            .within({0, 1e9})
            .option_of(all_that_solve, "--sigma", "V")
-           .overrules([](Board& b) { b.lambda.reset(); }),
+           .overrules([](Board& b) {
+             if (!b.overrules(section, "lambda")) b.lambda.reset();
+           }),
        field<&Board::plan, &Plan::rho>("rho", "ADMM penalty; left out, it follows from the response")
            .within({1e-12, 1e12})
            .option_of("reconstruct", "--rho", "V")

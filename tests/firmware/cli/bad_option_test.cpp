@@ -22,14 +22,14 @@ TEST_CASE("misspelt commands and options name the nearest that exists") {
   const ScratchProblem problem;
   const Case cases[] = {
       {"", "", {"--help"}},
-      {"reconstrct", "", {"reconstrct", "reconstruct?"}},
-      {"reconstruct --respnse A.npy", "", {"--respnse", "--response?", "--help"}},
-      {"reconstruct --response A.npy --lamda=3", "", {"--lamda", "--lambda?"}},
-      {"response --bord x", "", {"--bord", "--board?"}},
-      {"inspect A.npy --sizes 2x2", "", {"--sizes", "--size?"}},
-      {"reconstruct", "", {"--response"}},
-      {"response", "", {"--board"}},
-      {"inspect", "", {"what"}},
+      {"reconstrct", "reconstrct", {"reconstruct?"}},
+      {"reconstruct --respnse A.npy", "--respnse", {"--response?", "--help"}},
+      {"reconstruct --response A.npy --lamda=3", "--lamda", {"--lambda?"}},
+      {"response --bord x", "--bord", {"--board?"}},
+      {"inspect A.npy --sizes 2x2", "--sizes", {"--size?"}},
+      {"reconstruct", "--response", {}},
+      {"response", "--board", {}},
+      {"inspect", "what", {}},
       {"inspect --as picture A.npy", "--as", {"picture", "auto", "array", "response"}},
   };
   const auto before = names_in(problem.folder().path());
@@ -44,7 +44,7 @@ TEST_CASE("option values out of range name the value and what was expected") {
   const ScratchProblem problem;
   const Case cases[] = {
       {"", "--lambda or --sigma", {"--sigma", "--lambda", "--epsilon", "--rank"}},
-      {"--lambda 1 --sigma 1", "", {"--lambda", "--sigma"}},
+      {"--lambda 1 --sigma 1", "--lambda", {"--sigma"}},
       {"--lambda -1", "--lambda", {"-1", "0"}},
       {"--lambda nan", "--lambda", {"nan", "0"}},
       {"--lambda 1e999", "--lambda", {"1e999", "0"}},
@@ -63,7 +63,7 @@ TEST_CASE("option values out of range name the value and what was expected") {
       {"--sigma 1 --operator int8", "--operator", {"int8", "dense-runs-int8"}},
       {"--sigma 1 --box 1,0", "--box", {"1,0", "0,1"}},
       {"--sigma 1 --box 1", "--box", {"1", "0,1"}},
-      {"--sigma 1 --box 0,1 --nonnegative", "", {"--nonnegative", "--box"}},
+      {"--sigma 1 --box 0,1 --nonnegative", "--nonnegative", {"--box"}},
       {"--sigma 1 --solver yall1",
        "--solver",
        {"yall1", "admm", "adm", "cp", "fista", "omp", "pdhg", "tikhonov", "tsvd"}},

@@ -289,7 +289,7 @@ TEST_CASE("lambda from the samples needs their noise, and a first frame without 
   const TemporaryFolder folder;
   put_frames(folder, 2);
   check_failed(run_compueye(std::string(small_eye) + "--lambda 1 --lambda-from-samples --out x.npy", folder.path()),
-               hal::ErrorCode::usage, "", {"--lambda-from-samples", "--sigma"});
+               hal::ErrorCode::usage, "--lambda-from-samples", {"--sigma"});
   std::vector<double> weights(128, 1.0);
   weights[5] = 0.0;
   put_npy(folder, "w.npy", {2, 64}, weights);

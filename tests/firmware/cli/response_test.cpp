@@ -77,6 +77,6 @@ TEST_CASE("response as measured is another eye for every seed, and solvers take 
   CHECK(text.out.find("seed 1") != std::string::npos);
   const Outcome help = run_compueye("response --help", folder.path());
   CHECK(help.out.find("--as-measured") != std::string::npos);
-  check_failed(run_compueye(command + " --as-measured minus", folder.path()), hal::ErrorCode::usage, "",
-               {"--as-measured", "minus"});
+  check_failed(run_compueye(command + " --as-measured minus", folder.path()), hal::ErrorCode::usage, "--as-measured",
+               {"minus"});
 }

@@ -166,7 +166,7 @@ TEST_CASE("errors of recordings name the file and what is wrong") {
       {{"replay", flipped.string()}, ErrorCode::bad_format, flipped.string(), {"CRC"}},
       {{"run", "--board", other.path().string(), "--replay", rec}, ErrorCode::mismatch, rec, {"64", "6400"}},
       {{"run", "--board", at, "--pace", "fast"}, ErrorCode::usage, "--pace", {"--replay"}},
-      {{"run", "--board", at, "--replay", rec, "--seed", "3"}, ErrorCode::usage, "", {"--seed", "--replay"}},
+      {{"run", "--board", at, "--replay", rec, "--seed", "3"}, ErrorCode::usage, "--seed", {"--replay"}},
       {{"run", "--board", at, "--replay", rec, "--record", "x.rec"}, ErrorCode::usage, "--record", {"--replay"}},
       {{"run", "--board", at, "--replay", rec, "--sheet", "x.png"}, ErrorCode::usage, "--sheet", {"--scene"}},
       {{"run", "--board", at, "--replay", rec, "--deadline", "5"},
