@@ -2,54 +2,11 @@
 
 #include <cerrno>
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <system_error>
-#include <type_traits>
 
 #include "firmware/text/words.hpp"
 
 namespace compueye::firmware {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json json_of(const Figures& figures);
-
-Json json_of(const Value& value) {
-  return std::visit(
-      [](const auto& held) -> Json {
-        using Held = std::decay_t<decltype(held)>;
-        if constexpr (std::is_same_v<Held, std::monostate>) {
-          return nullptr;
-        } else if constexpr (std::is_same_v<Held, Value::List>) {
-          Json list = Json::array();
-          for (const Value& each : held) list.push_back(json_of(each));
-          return list;
-        } else if constexpr (std::is_same_v<Held, std::shared_ptr<const Figures>>) {
-          return json_of(*held);
-        } else {
-          return held;
-        }
-      },
-      value.data());
-}
-
-Json json_of(const Figures& figures) {
-  Json object = Json::object();
-  for (const auto& [key, value] : figures.members()) object[key] = json_of(value);
-  return object;
-}
-
-std::string text_of(const Json& object) {
-  constexpr int indent = 2;
-  return object.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-}  // namespace
-
-std::string json_text(const Figures& figures) {
-  return text_of(json_of(figures));
-}
 
 Figures figures_of(const hal::FrameAccount& account) {
   Figures dropped;
@@ -65,12 +22,6 @@ Figures figures_of(const hal::FrameAccount& account) {
 
 Figures figures_of(const hal::Error& error) {
   return {{"code", hal::name(error.code)}, {"place", error.place}, {"sentence", error.sentence}};
-}
-
-std::string with_error(const std::string& json, const hal::Error& error) {
-  Json object = Json::parse(json, nullptr, false);
-  object["error"] = json_of(figures_of(error));
-  return text_of(object);
 }
 
 hal::Result<void> print_text(const std::string& text, std::FILE* to, const std::string& name) {

@@ -9,18 +9,11 @@
 
 namespace compueye::firmware {
 
-/// One object of the members, whose keys keep their order. Valid whatever they hold: NaN and infinity become null,
-/// bytes that are not UTF-8 (file names) become U+FFFD. Two blanks of indentation, one line end.
-[[nodiscard]] std::string json_text(const Figures& figures);
-
 /// produced, delivered, dropped (one member a reason, in the enum's order), balanced
 [[nodiscard]] Figures figures_of(const hal::FrameAccount& account);
 
 /// code, place, sentence: what --json prints as the member "error" when a command fails.
 [[nodiscard]] Figures figures_of(const hal::Error& error);
-
-/// The object that `json` is the text of, with the member "error": how a report tells what went wrong after it.
-[[nodiscard]] std::string with_error(const std::string& json, const hal::Error& error);
 
 /// Writes `text` and flushes. Errors: no_space or io when the file (stdout on a full disk, a closed pipe) refuses it;
 /// `name` says which.

@@ -113,7 +113,7 @@ void Session::leave() {
   for (const std::string& each : parts_) fs::remove(each, ignored);
   // A progress line may still be open.
   if (isatty(STDERR_FILENO) == 1) std::fputc('\n', stderr);
-  if (json_) static_cast<void>(print_text(with_error("{}", stopped())));
+  if (json_) static_cast<void>(print_text(json_text(Figures{{"error", figures_of(stopped())}})));
   std::_Exit(print_error(stopped()));
 }
 
@@ -134,15 +134,15 @@ void Session::note(std::string_view sentence) {
   std::fputs(line.c_str(), stderr);
 }
 
-hal::Result<void> Session::print(const std::string& text, std::string json) {
-  if (!json_ || json.empty()) return print_text(text);
-  report_ = std::move(json);
+hal::Result<void> Session::print(Figures figures) {
+  if (!json_) return print_text(figures.text());
+  report_ = std::move(figures);
   return {};
 }
 
 hal::Result<void> Session::print_json(const hal::Result<void>& done) const {
-  if (done) return report_.empty() ? hal::Result<void>{} : print_text(report_);
-  return print_text(with_error(report_.empty() ? "{}" : report_, done.error()));
+  if (done) return report_ ? print_text(json_text(*report_)) : hal::Result<void>{};
+  return print_text(json_text(report_.value_or(Figures{}).add("error", figures_of(done.error()))));
 }
 
 int Session::end(hal::Result<void> done) {

@@ -70,13 +70,11 @@ class Session {
   void end_progress();
   /// A sentence beside the report, on stderr.
   void note(std::string_view sentence);
-  /// The report of the command, which prints one only: `text` at once, or `json` when the command has ended, with a
-  /// failure after it as its member "error". Error io or no_space when standard output refuses it.
-  [[nodiscard]] hal::Result<void> print(const std::string& text, std::string json = {});
-  [[nodiscard]] hal::Result<void> print(const std::string& text, const Figures& figures) {
-    return print(text, json_text(figures));
-  }
-  [[nodiscard]] hal::Result<void> print(const Figures& figures) { return print(figures.text(), json_text(figures)); }
+  /// The report of the command, which prints one only: as text at once, or with --json as one object when the command
+  /// has ended, with a failure after it as its member "error". Error io or no_space when standard output refuses it.
+  [[nodiscard]] hal::Result<void> print(Figures figures);
+  /// What is text for people and programs alike.
+  [[nodiscard]] hal::Result<void> print(const std::string& text) { return print_text(text); }
   /// Ends the command: its failure as a sentence on stderr and, with --json, as an object on stdout. What main()
   /// returns: 0, 1 (failed) or 2 (wrong usage).
   [[nodiscard]] int end(hal::Result<void> done);
@@ -89,7 +87,7 @@ class Session {
 
   hal::MonotonicClock clock_;
   bool json_ = false;
-  std::string report_;  // to be printed at the end, with --json
+  std::optional<Figures> report_;  // to be printed at the end, with --json
   std::optional<ProgressReporter> reporter_;
 
   OnSignal on_signal_ = OnSignal::ends_the_process;

@@ -132,47 +132,46 @@ void members(auto& each, Sweep& sweep) {
   each("notes", sweep.notes);
 }
 
-template <class Value>
-concept Worded = requires(Value value) {
+template <class Member>
+concept Worded = requires(Member value) {
   words(value);
 };
-template <class Value>
+template <class Member>
 struct IsList : std::false_type {};
 template <class Item>
 struct IsList<std::vector<Item>> : std::true_type {};
 
 struct Writer {
-  Json json = Json::object();
-  template <class Value>
-  void operator()(const char* key, Value& value) {
-    json[key] = written(value);
+  Figures figures;
+  template <class Member>
+  void operator()(const char* key, Member& value) {
+    figures.add(key, written(value));
   }
   /// What follows from other members is only written.
-  template <class Value>
-  void derived(const char* key, const Value& value) {
-    json[key] = value;
-  }
+  void derived(const char* key, Value value) { figures.add(key, std::move(value)); }
 
  private:
-  template <class Value>
-  static Json written(Value& value) {
-    if constexpr (std::is_same_v<Value, recon::OperatorKind>) {
+  template <class Member>
+  static Value written(Member& value) {
+    if constexpr (std::is_same_v<Member, recon::OperatorKind>) {
       return recon::name(value);
-    } else if constexpr (std::is_same_v<Value, std::optional<recon::OperatorKind>>) {
-      return value ? Json(recon::name(*value)) : Json();
-    } else if constexpr (Worded<Value>) {
+    } else if constexpr (std::is_same_v<Member, std::optional<recon::OperatorKind>>) {
+      return value ? Value(recon::name(*value)) : Value();
+    } else if constexpr (Worded<Member>) {
       for (const auto& named : words(value)) {
         if (named.kind == value) return named.name;
       }
-      return nullptr;
-    } else if constexpr (IsList<Value>::value) {
-      Json list = Json::array();
+      return {};
+    } else if constexpr (IsList<Member>::value) {
+      Value::List list;
       for (auto& item : value) list.push_back(written(item));
       return list;
+    } else if constexpr (std::is_same_v<Member, std::array<double, 2>>) {
+      return Value::List(value.begin(), value.end());
     } else if constexpr (requires(Writer w) { members(w, value); }) {
       Writer writer;
       members(writer, value);
-      return std::move(writer.json);
+      return std::move(writer.figures);
     } else {
       return value;
     }
@@ -182,35 +181,35 @@ struct Writer {
 /// Throws, as the library does; load_points() catches.
 struct Reader {
   const Json& json;
-  template <class Value>
-  void operator()(const char* key, Value& value) const {
+  template <class Member>
+  void operator()(const char* key, Member& value) const {
     read(json.at(key), key, value);
   }
-  template <class Value>
-  void derived(const char* /*key*/, const Value& /*value*/) const {}
+  template <class Member>
+  void derived(const char* /*key*/, const Member& /*value*/) const {}
 
  private:
-  template <class Value>
-  static void read(const Json& from, const std::string& key, Value& value) {
-    if constexpr (std::is_same_v<Value, recon::OperatorKind>) {
+  template <class Member>
+  static void read(const Json& from, const std::string& key, Member& value) {
+    if constexpr (std::is_same_v<Member, recon::OperatorKind>) {
       value = operator_from(from);
-    } else if constexpr (std::is_same_v<Value, std::optional<recon::OperatorKind>>) {
-      value = from.is_null() ? Value{} : Value(operator_from(from));
-    } else if constexpr (Worded<Value>) {
+    } else if constexpr (std::is_same_v<Member, std::optional<recon::OperatorKind>>) {
+      value = from.is_null() ? Member{} : Member(operator_from(from));
+    } else if constexpr (Worded<Member>) {
       const auto word = from.get<std::string>();
       const auto kind = recon::kind_of(words(value), word);
       if (!kind) throw std::out_of_range(fmt::format("{} is '{}'", key, word));
       value = *kind;
-    } else if constexpr (IsList<Value>::value) {
+    } else if constexpr (IsList<Member>::value) {
       for (const Json& item : from) read(item, key, value.emplace_back());
     } else if constexpr (requires(Reader r) { members(r, value); }) {
       const Reader reader{from};
       members(reader, value);
     } else if (key == "psnr_db" && from.is_null()) {
       // Infinity, the PSNR of a perfect picture, is null in JSON.
-      if constexpr (std::is_same_v<Value, double>) value = std::numeric_limits<double>::infinity();
+      if constexpr (std::is_same_v<Member, double>) value = std::numeric_limits<double>::infinity();
     } else {
-      value = from.get<Value>();
+      value = from.get<Member>();
     }
   }
 
@@ -229,17 +228,6 @@ void check_whole(const Sweep& sweep) {
     if (point.iterations < 1) throw std::out_of_range(fmt::format("iterations is {}", point.iterations));
     if (point.levels.size() != sweep.levels.size()) throw std::out_of_range("a point lacks a level");
   }
-}
-
-Json json_of(Sweep sweep) {
-  Writer writer;
-  members(writer, sweep);
-  return std::move(writer.json);
-}
-
-std::string text_of(const Json& json) {
-  constexpr int indent = 2;
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Result<Json> read_json(const std::string& path) {
@@ -287,8 +275,11 @@ PointsKey points_key(const Board& board, const recon::Response& living) {
   return {living.content_hash(), this_machine(), objective.constraint, objective.lo, objective.hi};
 }
 
-std::string points_json(const Sweep& sweep) {
-  return text_of(json_of(sweep));
+Figures figures_of(const Sweep& sweep) {
+  Writer writer;
+  Sweep copy = sweep;  // its members are listed once for reading too
+  members(writer, copy);
+  return std::move(writer.figures);
 }
 
 std::string points_path(const std::string& folder) {
@@ -297,9 +288,10 @@ std::string points_path(const std::string& folder) {
 
 Result<void> store_points(const std::string& folder, const Sweep& sweep) {
   TRY(make_folder(folder, "cannot be made to store measured points in"));
-  Json json{{"format", format_name}, {"version", format_version}};
-  json.update(json_of(sweep));
-  const std::string text = text_of(json);
+  Figures file{{"format", format_name}, {"version", format_version}};
+  const Figures figures = figures_of(sweep);
+  for (const auto& [key, value] : figures.members()) file.add(key, value);
+  const std::string text = json_text(file);
   return write_file_atomically(points_path(folder), std::as_bytes(std::span(text)));
 }
 

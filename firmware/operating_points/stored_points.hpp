@@ -4,6 +4,7 @@
 #include <string>
 
 #include "firmware/operating_points/measured_points.hpp"
+#include "firmware/text/figures.hpp"
 #include "hal/result.hpp"
 #include "recon/response.hpp"
 
@@ -18,14 +19,14 @@ struct PointsKey {
 };
 [[nodiscard]] PointsKey points_key(const Board& board, const recon::Response& living);
 
-/// Every figure of a sweep as one JSON object, two blanks of indentation, one line end: what `pareto --json` prints.
-[[nodiscard]] std::string points_json(const Sweep& sweep);
+/// Every figure of a sweep: what `pareto --json` prints.
+[[nodiscard]] Figures figures_of(const Sweep& sweep);
 
 /// "<folder>/accuracy-and-time.json"
 [[nodiscard]] std::string points_path(const std::string& folder);
 
-/// Stores atomically, replacing what is there; makes the folder. The file is what points_json() gives with format and
-/// version before it. Errors: those of AtomicFile.
+/// Stores atomically, replacing what is there; makes the folder. The file is JSON of figures_of() with format and
+/// version before them. Errors: those of AtomicFile.
 [[nodiscard]] hal::Result<void> store_points(const std::string& folder, const Sweep& sweep);
 
 /// Errors: not_found (none stored), stale (another response, machine, build or constraint: the sentence says which),

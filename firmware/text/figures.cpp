@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
+#include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/words.hpp"
@@ -81,6 +83,46 @@ std::string in_form(const Value& value, std::string_view form) {
   return decimals ? fixed(number, digits) : significant(number, digits);
 }
 
+/// What `path` leads to from the value on.
+const Value* at(const Value& value, std::string_view path) {
+  if (const auto* inner = std::get_if<Inner>(&value.data())) return (*inner)->find(path);
+  const auto* list = std::get_if<Value::List>(&value.data());
+  std::size_t index = 0;
+  const auto number = std::from_chars(path.data(), path.data() + path.size(), index);
+  if (list == nullptr || number.ec != std::errc{} || index >= list->size()) return nullptr;
+  const std::size_t dot = path.find('.');
+  return dot == std::string_view::npos ? &(*list)[index] : at((*list)[index], path.substr(dot + 1));
+}
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Figures& figures);
+
+Json json_of(const Value& value) {
+  return std::visit(
+      [](const auto& held) -> Json {
+        using Held = std::decay_t<decltype(held)>;
+        if constexpr (std::is_same_v<Held, std::monostate>) {
+          return nullptr;
+        } else if constexpr (std::is_same_v<Held, Value::List>) {
+          Json list = Json::array();
+          for (const Value& each : held) list.push_back(json_of(each));
+          return list;
+        } else if constexpr (std::is_same_v<Held, Inner>) {
+          return json_of(*held);
+        } else {
+          return held;
+        }
+      },
+      value.data());
+}
+
+Json json_of(const Figures& figures) {
+  Json object = Json::object();
+  for (const auto& [key, value] : figures.members()) object[key] = json_of(value);
+  return object;
+}
+
 }  // namespace
 
 Value::Value(Figures figures) : data_(std::make_shared<const Figures>(std::move(figures))) {}
@@ -133,18 +175,10 @@ Figures& Figures::say(std::string_view text) {
 const Value* Figures::find(std::string_view path) const {
   if (path.empty() && !members_.empty()) return &members_.back().second;
   const std::size_t dot = path.find('.');
-  const auto at = std::find_if(members_.begin(), members_.end(),
-                               [key = path.substr(0, dot)](const auto& member) { return member.first == key; });
-  if (at == members_.end()) return nullptr;
-  if (dot == std::string_view::npos) return &at->second;
-  path.remove_prefix(dot + 1);
-  if (const auto* list = std::get_if<Value::List>(&at->second.data())) {
-    std::size_t index = 0;
-    std::from_chars(path.data(), path.data() + path.size(), index);
-    return index < list->size() ? &(*list)[index] : nullptr;
-  }
-  const auto* inner = std::get_if<Inner>(&at->second.data());
-  return inner == nullptr ? nullptr : (*inner)->find(path);
+  const auto member = std::find_if(members_.begin(), members_.end(),
+                                   [key = path.substr(0, dot)](const auto& each) { return each.first == key; });
+  if (member == members_.end()) return nullptr;
+  return dot == std::string_view::npos ? &member->second : at(member->second, path.substr(dot + 1));
 }
 
 std::string Figures::sentence(std::string_view sentence, std::string_view missing) const {
@@ -179,6 +213,11 @@ std::string Figures::sentence(std::string_view sentence, std::string_view missin
 
 std::string Figures::text() const {
   return lines_.size() == 0 ? told_ : told_ + lines_.text();
+}
+
+std::string json_text(const Figures& figures) {
+  constexpr int indent = 2;
+  return json_of(figures).dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string table_of(const Value::List& rows, const std::vector<FigureColumn>& columns, std::string_view missing) {

@@ -103,6 +103,11 @@ class Figures {
   std::vector<std::pair<std::string, Value>> members_;
 };
 
+/// One object of the members, whose keys keep their order; of two with the same key the later one counts. Valid
+/// whatever they hold: NaN and infinity become null, bytes that are not UTF-8 (file names) become U+FFFD. Two blanks of
+/// indentation, one line end.
+[[nodiscard]] std::string json_text(const Figures& figures);
+
 /// A column of a table of figures: its cells are a sentence about those of the row.
 struct FigureColumn {
   std::string title;

@@ -3,12 +3,13 @@
 #include <string>
 
 #include "firmware/operating_points/measured_points.hpp"
+#include "firmware/text/figures.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
 
-/// For people: a table of the efficient points for each noise level and overall, and how to read it.
-[[nodiscard]] std::string sweep_text(const Sweep& sweep);
+/// Every figure; for people a table of the efficient points for each noise level and overall, and how to read it.
+[[nodiscard]] Figures sweep_report(const Sweep& sweep);
 
 /// A header line, then a line for every point at every noise level and one for it overall, and the conventional eye;
 /// RFC 4180.

@@ -198,7 +198,7 @@ TEST_CASE("an account becomes JSON with every reason") {
 
 TEST_CASE("an error becomes a member of what was reported before it") {
   const hal::Error error{hal::ErrorCode::stale, "f.eye", "made from another A"};
-  const Json json = Json::parse(with_error(json_text(Figures{{"frames", 3}}), error));
+  const Json json = Json::parse(json_text(Figures{{"frames", 3}, {"error", 1}}.add("error", figures_of(error))));
   CHECK(json["frames"] == 3);
   CHECK(json["error"]["code"] == hal::name(hal::ErrorCode::stale));
   CHECK(json["error"]["place"] == "f.eye");

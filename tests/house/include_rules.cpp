@@ -54,7 +54,8 @@ constexpr std::array<FolderRule, 26> rules{{
      "firmware/files: hal, recon, libpng, xxhash and OS headers"},
     {"firmware/sinks", "hal firmware/files firmware/sinks", none, true, none, false,
      "firmware/sinks: hal, firmware/files and OS headers"},
-    {"firmware/text", "hal firmware/text", "fmt", false, none, false, "firmware/text: hal and fmt"},
+    {"firmware/text", "hal firmware/text", "fmt nlohmann-json", false, none, false,
+     "firmware/text: hal, fmt and nlohmann-json"},
     {"firmware/eye",
      "hal recon recon/core calib sim drivers/protocol drivers/device drivers/transport firmware/files "
      "firmware/pipeline firmware/text firmware/eye",

@@ -92,7 +92,7 @@ Result<void> run_pareto(const ParetoRequest& o, Session& session) {
   Sweep measured = TRY(std::move(swept));
   store(board, measured);
   // Printed first: a file that cannot be written must not cost the figures.
-  TRY(session.print(sweep_text(measured), points_json(measured)));
+  TRY(session.print(sweep_report(measured)));
   return write_files(o.out, measured, session);
 }
 

@@ -14,7 +14,7 @@ TEST_CASE("the table has every level and all together, says what is missing, and
   Sweep sweep = some_sweep({{2, 1, 0.5}, {4, 2, 0.6}, {8, 4, 0.1}});
   sweep.cut_short = "the sweep was stopped";
   sweep.notes = {"twice", "twice"};
-  const std::string text = sweep_text(sweep);
+  const std::string text = sweep_report(sweep).text();
   const auto contains = [&](const std::string& part) { return text.find(part) != std::string::npos; };
   CHECK(contains("Partial: the sweep was stopped"));
   CHECK(text.find("note: twice") == text.rfind("note: twice"));
