@@ -10,8 +10,10 @@
 #include <type_traits>
 
 #include "firmware/eye/settings/setting.hpp"
+#include "firmware/text/number_text.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
+#include "recon/solver_list.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -40,34 +42,32 @@ Check readable(const Target& target) {
         using T = decltype(held_by(value));
         if constexpr (std::is_same_v<T, std::string>) {
           return Check();
-        } else if constexpr (std::is_same_v<T, double>) {
-          return number_where([](double) { return true; }, "a finite number");
         } else {
+          constexpr bool real = std::is_same_v<T, double>;
           return Check([](const std::string& text) {
-            return whole<T>(text) ? "" : fmt::format("is '{}', expected a whole number", excerpt(text));
+            bool ok = false;
+            if constexpr (real) {
+              ok = typed_number(text).has_value();
+            } else {
+              ok = whole<T>(text).has_value();
+            }
+            if (ok) return std::string();
+            return fmt::format("is '{}', expected a {} number", excerpt(text), real ? "finite" : "whole");
           });
         }
       },
       target);
 }
 
-struct Halves {
-  std::string_view first, second;
-};
-
-std::optional<Halves> split(std::string_view text, char at) noexcept {
-  const auto place = text.find(at);
-  if (place == std::string_view::npos) return std::nullopt;
-  return Halves{text.substr(0, place), text.substr(place + 1)};
-}
-
 /// Who has no board begins with what a Board is by itself.
 std::string meaning_of(const Setting& setting, bool of_board) {
-  const auto usual = of_board ? std::nullopt : setting.show(Board());
+  // What is left to a rule shows the number that stands for it.
+  const bool ruled = setting.choices.empty() && !setting.fallback;
+  const auto usual = of_board || ruled ? std::nullopt : setting.show(Board());
   std::string text(setting.meaning);
   if (!setting.choices.empty()) {
     const auto* word = usual ? std::get_if<std::string>(&*usual) : nullptr;
-    text += ": " + choices(setting.choices, word != nullptr ? *word : std::string());
+    text = choices(setting.choices, word != nullptr ? *word : std::string()) + "; " + text;
   } else if (usual) {
     text += " (default " + quoted(*usual) + ")";
   }
@@ -84,6 +84,29 @@ bool Overrides::has(std::string_view option) const {
 hal::Result<void> Overrides::apply(Board& board) const {
   for (const auto& [setting, text] : texts_) {
     if (text) TRY(set(board, *setting, *text, setting->option));
+  }
+  return {};
+}
+
+hal::Result<void> need_solver(const recon::SolverRow& solver, bool (*takes)(const recon::SolverRow&),
+                              std::string_view option, std::string_view what) {
+  if (takes(solver)) return {};
+  std::vector<std::string_view> takers;
+  for (const recon::SolverKind each : recon::solvers()) {
+    if (takes(*each)) takers.push_back(each->name);
+  }
+  return need(false, option,
+              fmt::format("is {}, which {} has not; it goes with --solver {} only", what, solver.name,
+                          fmt::join(takers, " or ")));
+}
+
+hal::Result<void> Overrides::check_solver(const recon::SolverRow& solver) const {
+  for (const auto& [setting, text] : texts_) {
+    if (!text || setting->taken_by == nullptr) continue;
+    const bool word = !setting->choices.empty();
+    if (word && setting->fallback == SettingValue(*text)) continue;  // which is what the others do
+    const std::string option(setting->option);
+    TRY(need_solver(solver, setting->taken_by, word ? option + " " + *text : option, setting->feature));
   }
   return {};
 }
@@ -109,22 +132,6 @@ Option& OptionList::put(std::string name, std::variant<Target, Switch> target, s
   const auto* value = std::get_if<Target>(&target);
   Check check = value != nullptr ? readable(*value) : Check();
   return rows_.emplace_back(Option{std::move(name), target, std::move(meaning), {}, std::move(check), {}, {}, false});
-}
-
-Check number_where(std::function<bool(double)> accepts, std::string expected) {
-  return [accepts = std::move(accepts), expected = std::move(expected)](const std::string& text) {
-    const auto value = number_from(text);
-    if (value && accepts(*value)) return std::string();
-    return fmt::format("is '{}', expected {}", excerpt(text), expected);
-  };
-}
-
-Check whole_number(long least, long most) {
-  return [least, most](const std::string& text) {
-    const auto value = whole<long>(text);
-    if (value && *value >= least && *value <= most) return std::string();
-    return fmt::format("is '{}', expected a whole number from {} to {}", excerpt(text), least, most);
-  };
 }
 
 Check one_of(std::vector<std::string_view> known) {
@@ -162,26 +169,13 @@ hal::Result<void> need_length(std::string_view option, const std::optional<doubl
   return need(ok, option, fmt::format("is {}, expected mm above 0 and at most 1000000", mm.value_or(0.0)));
 }
 
-std::optional<double> number_from(std::string_view text) noexcept {
-  const auto value = whole<double>(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
-}
-
 std::optional<PictureSize> picture_size_from(std::string_view text) noexcept {
-  const auto halves = split(text, 'x');
-  if (!halves) return std::nullopt;
-  const auto rows = whole<int>(halves->first), cols = whole<int>(halves->second);
+  const std::size_t x = text.find('x');
+  if (x == std::string_view::npos) return std::nullopt;
+  const auto rows = whole<int>(text.substr(0, x)), cols = whole<int>(text.substr(x + 1));
   if (!rows || !cols || *rows < 1 || *cols < 1) return std::nullopt;
   if (static_cast<std::int64_t>(*rows) * *cols > std::numeric_limits<int>::max()) return std::nullopt;
   return PictureSize{*rows, *cols};
-}
-
-std::optional<Interval> interval_from(std::string_view text) noexcept {
-  const auto halves = split(text, ',');
-  if (!halves) return std::nullopt;
-  const auto lo = number_from(halves->first), hi = number_from(halves->second);
-  if (!lo || !hi || !(*lo < *hi)) return std::nullopt;
-  return Interval{*lo, *hi};
 }
 
 }  // namespace compueye::firmware

@@ -13,10 +13,18 @@
 
 #include "hal/result.hpp"
 
+namespace compueye::recon {
+struct SolverRow;
+}
+
 namespace compueye::firmware {
 
 struct Board;
 struct Setting;
+
+/// `what` is given, but this solver is none of those that take it: error usage at the option, naming them.
+[[nodiscard]] hal::Result<void> need_solver(const recon::SolverRow& solver, bool (*takes)(const recon::SolverRow&),
+                                            std::string_view option, std::string_view what);
 
 /// What a command line says otherwise than the board.
 class Overrides {
@@ -25,6 +33,8 @@ class Overrides {
   [[nodiscard]] bool has(std::string_view option) const;
   /// The command line has the last word. Error usage at the option.
   [[nodiscard]] hal::Result<void> apply(Board& board) const;
+  /// Those that are given are of this solver. Error usage at the option, naming the solvers that take it.
+  [[nodiscard]] hal::Result<void> check_solver(const recon::SolverRow& solver) const;
 
  private:
   friend class OptionList;
@@ -95,10 +105,6 @@ class OptionList {
 
 // Checks whose sentence says what was given and what was expected.
 
-/// A finite number for which `accepts` is true; `expected` continues "is 'x', expected".
-[[nodiscard]] Check number_where(std::function<bool(double)> accepts, std::string expected);
-/// A whole number from `least` to `most`.
-[[nodiscard]] Check whole_number(long least, long most);
 /// One of `known`; for any other name the nearest is suggested.
 [[nodiscard]] Check one_of(std::vector<std::string_view> known);
 /// "admm (default), adm or cp": the words of one_of() for the meaning of an option.
@@ -111,23 +117,11 @@ class OptionList {
 /// A length in mm, where one is given.
 [[nodiscard]] hal::Result<void> need_length(std::string_view option, const std::optional<double>& mm);
 
-// Values as people type them after an option; nothing when the text is anything else, in part or as a whole.
-
-/// A finite decimal number, "0.5", "-3", "1e-6".
-[[nodiscard]] std::optional<double> number_from(std::string_view text) noexcept;
-
 struct PictureSize {
   int rows = 0;  ///< H >= 1
   int cols = 0;  ///< W >= 1
 };
-/// "16x16", rows first; at most 2^31 - 1 pixels.
+/// "16x16", rows first; at most 2^31 - 1 pixels. Nothing for any other text.
 [[nodiscard]] std::optional<PictureSize> picture_size_from(std::string_view text) noexcept;
-
-struct Interval {
-  double lo = 0.0;
-  double hi = 0.0;  ///< > lo
-};
-/// "0,1"
-[[nodiscard]] std::optional<Interval> interval_from(std::string_view text) noexcept;
 
 }  // namespace compueye::firmware

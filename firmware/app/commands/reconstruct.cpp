@@ -53,18 +53,19 @@ Result<void> check_sees(const ReconstructOptions& o, const recon::Response& resp
 }
 
 /// The factor and the penalty come from squares of the entries.
-Result<void> check_range(const ReconstructOptions& o, const recon::Response& response) {
+Result<void> check_range(const std::string& file, recon::Precision precision, const recon::Response& response) {
   const double squares = response.squared_norm();
-  const double limit =
-      o.precision == "f64" ? std::numeric_limits<double>::max() : double{std::numeric_limits<float>::max()};
+  const double limit = precision == recon::Precision::f64 ? std::numeric_limits<double>::max()
+                                                          : double{std::numeric_limits<float>::max()};
   if (squares <= limit) return {};
-  return fail(ErrorCode::out_of_range, o.response,
+  return fail(ErrorCode::out_of_range, file,
               fmt::format("has entries so large that their squares (with the weights) add up to {:.3g}, expected "
                           "entries around 0 to 1, the share of a pixel that a channel sees",
                           squares));
 }
 
-Result<Inputs> read_inputs(const ReconstructOptions& o, PictureSize size, const Session& session) {
+Result<Inputs> read_inputs(const ReconstructOptions& o, const ProblemStatement& problem, const Session& session) {
+  const PictureSize size = problem.size;
   Inputs inputs;
   recon::Response response = TRY(read_response(o.response));
   TRY(session.check_stop());
@@ -74,22 +75,22 @@ Result<Inputs> read_inputs(const ReconstructOptions& o, PictureSize size, const 
   inputs.frames = TRY(read_frame_inputs(response, o.samples, o.weights));
   inputs.response = scaled_response(std::move(response), inputs.frames);
   TRY(check_sees(o, *inputs.response, true));
-  TRY(check_range(o, *inputs.response));
+  TRY(check_range(o.response, problem.board.plan.precision, *inputs.response));
   if (!o.truth.empty()) inputs.truth = TRY(Truth::read(o.truth, size, inputs.frames.frames));
   return inputs;
 }
 
 /// The risk is known for samples that all carry the same noise.
-Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, const ProblemStatement& problem,
-                                                const Inputs& inputs, const recon::Progress& progress) {
+Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, const Board& board, const Inputs& inputs,
+                                                const recon::Progress& progress) {
   const auto weights = inputs.frames.weights_of(0);
   if (std::any_of(weights.begin(), weights.end(), [](float w) { return w != 1.0F; })) {
     return fail(ErrorCode::unsupported, "--lambda-from-samples",
                 "needs a first frame whose weights are the largest of every channel, expected --weights of shape (M,) "
                 "or a complete first frame");
   }
-  auto found = recon::lambda_by_risk(*inputs.response, problem.objective, problem.plan, inputs.frames.samples_of(0),
-                                     *o.sigma, std::nullopt, progress);
+  auto found = recon::lambda_by_risk(*inputs.response, board.objective, board.plan, inputs.frames.samples_of(0),
+                                     board.noise_sigma(), std::nullopt, progress);
   if (!found && found.error().code != ErrorCode::interrupted) found.error().place = o.samples;
   return found;
 }
@@ -97,27 +98,24 @@ Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, con
 /// The solver knows of lambda and response, people of the options and files behind them.
 std::string place_of(const ReconstructOptions& o, const std::string& place) {
   if (place == "operator") return "--operator";
-  if (o.rank && place == "rank") return "--rank";
-  if (o.rho && place == "rho") return "--rho";
-  if (o.lambda && place == "lambda") return "--lambda";
-  return o.response;
+  return o.settings.has("--" + place) ? "--" + place : o.response;
 }
 
-Result<recon::Reconstructor> set_up(const ReconstructOptions& o, ProblemStatement problem, const Inputs& inputs,
+Result<recon::Reconstructor> set_up(const ReconstructOptions& o, Board board, const Inputs& inputs,
                                     const recon::Progress& progress) {
   const recon::Response& a = *inputs.response;
-  problem.plan.max_reweighted = inputs.frames.max_reweighted;
+  board.plan.max_reweighted = inputs.frames.max_reweighted;
   // With epsilon or a rank there is no lambda.
-  const std::optional<double> by_hand = o.sigma ? std::nullopt : std::optional(o.lambda.value_or(0.0));
-  problem.objective.lambda =
-      TRY(choose_lambda(a, problem.plan.solver, problem.objective.basis, by_hand, o.sigma.value_or(0.0))).value;
+  if (!board.sigma && !board.lambda) board.lambda = 0.0;
+  board.objective.lambda =
+      TRY(choose_lambda(a, board.plan.solver, board.objective.basis, board.lambda, board.noise_sigma())).value;
   std::optional<recon::Factor> factor;
   if (o.lambda_from_samples) {
-    recon::LambdaByRisk found = TRY(lambda_from_samples(o, problem, inputs, progress));
-    problem.objective.lambda = found.lambda;
+    recon::LambdaByRisk found = TRY(lambda_from_samples(o, board, inputs, progress));
+    board.objective.lambda = found.lambda;
     factor = std::move(found.factor);
   }
-  auto made = recon::Reconstructor::create(a, problem.objective, problem.plan, std::move(factor), progress);
+  auto made = recon::Reconstructor::create(a, board.objective, board.plan, std::move(factor), progress);
   if (!made && made.error().code != ErrorCode::interrupted) made.error().place = place_of(o, made.error().place);
   return made;
 }
@@ -162,12 +160,12 @@ Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& 
 /// Samples from a file become pictures in files, and a report on stdout. Either every output appears or none.
 Result<void> reconstruct(const ReconstructOptions& o, Session& session) {
   const ProblemStatement problem = TRY(problem_of(o));
-  Inputs inputs = TRY(read_inputs(o, problem.size, session));
+  Inputs inputs = TRY(read_inputs(o, problem, session));
   PictureOutputs outputs = TRY(PictureOutputs::create(
       {o.out, o.png, problem.size, inputs.frames.frames, inputs.frames.has_frame_axis}, session));
 
   const std::int64_t began_ns = session.clock().now_ns();
-  auto made = set_up(o, problem, inputs, session.progress());
+  auto made = set_up(o, problem.board, inputs, session.progress());
   session.end_progress();
   TRY(session.check_stop());
   const recon::Reconstructor reconstructor = TRY(std::move(made));
@@ -178,7 +176,7 @@ Result<void> reconstruct(const ReconstructOptions& o, Session& session) {
       TRY(reconstruct_frames(reconstructor, inputs.frames, inputs.truth ? &*inputs.truth : nullptr, outputs, session));
   TRY(session.seal());
   TRY(outputs.commit());
-  return session.print(figures_of(o, reconstructor, setup_s, records));
+  return session.print(figures_of(o, problem.board.sigma, reconstructor, setup_s, records));
 }
 
 Action declare(OptionList& options) {

@@ -12,16 +12,9 @@
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
 #include "recon/solver_list.hpp"
-#include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
 namespace {
-
-std::vector<std::string_view> operator_words() {
-  std::vector<std::string_view> words = recon::words_of(recon::operator_names());
-  words.insert(words.begin(), "auto");
-  return words;
-}
 
 void add_files(OptionList& options, ReconstructOptions& o) {
   options.add("--response", o.response, "measurement matrix A (M, N): .npy dense or .mtx sparse")
@@ -44,82 +37,22 @@ void add_files(OptionList& options, ReconstructOptions& o) {
 }
 
 void add_problem(OptionList& options, ReconstructOptions& o) {
-  options.add("--solver", o.solver, choices(recon::words_of(recon::solver_names()), "admm"))
-      .type("NAME")
-      .where(one_of(recon::words_of(recon::solver_names())));
-  options
-      .add("--basis", o.basis,
-           "where the picture is sparse: " + choices(recon::words_of(recon::basis_names()), "identity"))
-      .type("NAME")
-      .where(one_of(recon::words_of(recon::basis_names())));
   options.flag("--nonnegative", o.nonnegative, "constraint x >= 0");
-  options.add("--box", o.box, "constraint LO <= x <= HI, such as 0,1")
-      .type("LO,HI")
-      .excludes("--nonnegative")
-      .where([](const std::string& text) {
-        return interval_from(text) ? std::string()
-                                   : "is '" + text + "', expected two finite numbers with the lower first, such as 0,1";
-      });
-  const auto not_negative = [](double v) { return v >= 0.0; };
-  options.add("--lambda", o.lambda, "weight of the penalty, by hand")
-      .type("V")
-      .where(number_where(not_negative, "a finite number of 0 or more"));
-  options.add("--sigma", o.sigma, "noise of a sample (of weight 1) in white pixels: lambda by rule")
-      .type("V")
-      .excludes("--lambda")
-      .where(number_where(not_negative, "a finite number of 0 or more"));
+  options.settings("reconstruct", o.settings);
   options
       .flag("--lambda-from-samples", o.lambda_from_samples,
             "choose among six multiples of the rule's lambda by the risk that the first frame shows; costs twelve "
             "frames")
       .needs("--sigma");
-  options
-      .add("--epsilon", o.epsilon,
-           "adm: min ||Psi x||_1 subject to ||W^(1/2)(Ax-y)|| <= V; omp: stop there; in white pixels")
-      .type("V")
-      .where(number_where(not_negative, "a finite number of 0 or more"));
-  options
-      .add(
-          "--rank", o.rank,
-          "tsvd: how many singular values to keep (with --sigma: by rule); pdhg: how many modes to treat exactly (400)")
-      .type("R")
-      .where(whole_number(1, 1'000'000));
-}
-
-void add_plan(OptionList& options, ReconstructOptions& o) {
-  options.add("--iterations", o.iterations, "exactly this many a frame (default 100); omp: elements, at most")
-      .type("K")
-      .where(whole_number(1, 1'000'000));
-  options.add("--rho", o.rho, "penalty of admm and adm (default: by rule)")
-      .type("V")
-      .where(number_where([](double v) { return v > 0.0; }, "a finite number above 0"));
-  options
-      .add("--reweight", o.reweight,
-           "admm in pixels: as many iterations again with weights 2V / (|x| + V), for pictures of few lit pixels; "
-           "V about a tenth of their brightness")
-      .type("V")
-      .where(number_where([](double v) { return v > 0.0; }, "a finite number above 0"));
-  options.add("--relaxation", o.relaxation, "of admm and cp (default 1.7)")
-      .type("V")
-      .where(number_where([](double v) { return v > 0.0 && v < 2.0; }, "a number above 0 and below 2"));
-  options.add("--precision", o.precision, "f32 (default) or f64").type("NAME").where(one_of({"f32", "f64"}));
-  options
-      .add("--start", o.start,
-           "with pdhg: cold (default), or warm: a frame goes on from the last one unless it has changed too much")
-      .type("NAME")
-      .where(one_of({"cold", "warm"}));
-  options
-      .add("--operator", o.op,
-           "how A is applied: auto (default: the quickest that keeps every digit), " +
-               choices(recon::words_of(recon::operator_names())) + ", which round the response")
-      .type("NAME")
-      .where(one_of(operator_words()));
-  options.add("--threads", o.threads, "that share a frame's work (default 1); the picture is the same")
-      .type("T")
-      .where(whole_number(1, recon::WorkerThreads::most));
   options.flag("--as-published", o.as_published,
                "adm as YALL1 v1.4 does it, for comparison: it may stop where there is no solution");
   options.json("print one object with every figure");
+  // Without a board there is no noise to fall back on, and no constraint beside the box.
+  options.at("--lambda").meaning = "weight of the penalty, by hand";
+  options.at("--sigma").excludes("--lambda").meaning =
+      "noise of a sample (of weight 1) in white pixels: lambda by rule";
+  options.at("--box").excludes("--nonnegative").meaning = "constraint LO <= x <= HI, such as 0,1";
+  options.at("--iterations").meaning += "; omp: elements, at most";
 }
 
 hal::Result<void> usage(std::string_view option, std::string sentence) {
@@ -166,39 +99,30 @@ recon::SolverKind published_of(const recon::SolverRow& row) {
   return recon::solver_named(std::string(row.name) + " as published");
 }
 
-/// The option is not given, or the solver is one of those that take it.
-hal::Result<void> only_with(bool given, std::string_view option, std::string_view meaning, recon::SolverKind solver,
-                            bool (*takes)(const recon::SolverRow&)) {
-  if (!given || takes(*solver)) return {};
-  std::vector<std::string_view> takers;
-  for (const recon::SolverKind each : recon::solvers()) {
-    if (takes(*each)) takers.push_back(each->name);
+hal::Result<void> check_direct(const Overrides& given, const Board& board) {
+  const recon::SolverRow& solver = *board.plan.solver;
+  if (!solver.direct) return {};
+  if (given.has("--iterations") || given.has("--rho") || given.has("--relaxation")) {
+    return usage(fmt::format("--solver {}", solver.name),
+                 "solves directly, so --iterations, --rho and --relaxation do nothing with it");
   }
-  return usage(option, fmt::format("is {}, which {} has not; it goes with --solver {} only", meaning, solver->name,
-                                   fmt::join(takers, " or ")));
-}
-
-hal::Result<void> check_direct(const ReconstructOptions& o, recon::SolverKind solver) {
-  if (!solver->direct) return {};
-  if (o.iterations || o.rho || o.relaxation) {
-    return usage("--solver " + o.solver, "solves directly, so --iterations, --rho and --relaxation do nothing with it");
-  }
-  if (o.lambda && !(*o.lambda > 0.0)) {
+  if (board.lambda && !(*board.lambda > 0.0)) {
     return usage("--lambda",
-                 fmt::format("is 0, expected a number above 0 with {}, where it is {}", o.solver,
-                             has_rank(*solver) ? "the least square of a singular value" : "the weight of ||x||^2"));
+                 fmt::format("is 0, expected a number above 0 with {}, where it is {}", solver.name,
+                             has_rank(solver) ? "the least square of a singular value" : "the weight of ||x||^2"));
   }
   return {};
 }
 
-hal::Result<void> check_distance(const ReconstructOptions& o, recon::SolverKind solver) {
-  const bool cut = o.rank && has_rank(*solver);
-  if (o.epsilon || cut) {
-    const char* option = o.epsilon ? "--epsilon" : "--rank";
-    if (!o.lambda && !o.sigma && !(o.epsilon && cut)) return {};
-    return usage(option, "takes the place of --lambda and --sigma, expected only one of them");
+hal::Result<void> check_distance(const Board& board) {
+  const bool epsilon = board.objective.epsilon.has_value(), cut = board.plan.rank > 0 && has_rank(*board.plan.solver);
+  const bool weighted = board.lambda || board.sigma;
+  if (epsilon || cut) {
+    if (!weighted && !(epsilon && cut)) return {};
+    return usage(epsilon ? "--epsilon" : "--rank",
+                 "takes the place of --lambda and --sigma, expected only one of them");
   }
-  if (o.lambda || o.sigma) return {};
+  if (weighted) return {};
   return usage("--lambda or --sigma",
                "is needed: --sigma takes the noise of one sample in white pixels and finds lambda by rule, --lambda "
                "sets the weight of the penalty by hand (" +
@@ -229,37 +153,28 @@ std::string solver_table_text() {
 }
 
 /// The solver takes this basis with this constraint. Error usage, naming the solvers that do.
-hal::Result<void> check_pair(const ProblemStatement& problem) {
-  const recon::Objective& objective = problem.objective;
-  if (recon::supports(problem.plan.solver, objective.basis, objective.constraint)) return {};
+hal::Result<void> check_pair(const Board& board) {
+  const recon::Objective& objective = board.objective;
+  if (recon::supports(board.plan.solver, objective.basis, objective.constraint)) return {};
   return usage("--solver", fmt::format("{} does not take basis {} with constraint {}; these solvers do: {}",
-                                       name(problem.plan.solver), name(objective.basis), name(objective.constraint),
+                                       name(board.plan.solver), name(objective.basis), name(objective.constraint),
                                        recon::solvers_for(objective.basis, objective.constraint)));
 }
 
 /// Options that only some solvers have are given to those only, and exactly one says how far a solver may stay from y:
 /// lambda, sigma, epsilon or rank. Error usage, naming the option and the solvers that take it.
-hal::Result<void> check_solver_options(const ReconstructOptions& o) {
-  using Row = recon::SolverRow;
-  const recon::SolverKind solver = recon::solver_named(o.solver);
-  TRY(only_with(o.epsilon.has_value(), "--epsilon", "a bound of the residual", solver, takes_epsilon));
-  TRY(only_with(o.rank.has_value(), "--rank", "a number of singular values or modes", solver,
-                [](const Row& row) { return row.rank != recon::RankUse::none; }));
-  TRY(only_with(o.as_published, "--as-published", "what YALL1 does", solver,
-                [](const Row& row) { return published_of(row) != nullptr; }));
-  TRY(check_direct(o, solver));
-  TRY(only_with(o.rho.has_value(), "--rho", "a penalty or an inverse step", solver, [](const Row& row) {
-    return row.rho == recon::RhoUse::penalty || row.rho == recon::RhoUse::inverse_step;
-  }));
-  TRY(only_with(o.relaxation.has_value(), "--relaxation", "over-relaxation", solver,
-                [](const Row& row) { return row.relaxes; }));
-  TRY(only_with(o.start == "warm", "--start warm", "a last frame", solver,
-                [](const Row& row) { return row.starts_warm(); }));
-  TRY(only_with(o.reweight.has_value(), "--reweight", "a second pass", solver,
-                [](const Row& row) { return row.reweights; }));
-  TRY(need(!o.reweight || o.basis == "identity", "--reweight",
+hal::Result<void> check_solver_options(const ReconstructOptions& o, const Board& board) {
+  const recon::SolverRow& solver = *board.plan.solver;
+  TRY(check_direct(o.settings, board));
+  TRY(o.settings.check_solver(solver));
+  if (o.as_published) {
+    TRY(need_solver(
+        solver, [](const recon::SolverRow& row) { return published_of(row) != nullptr; }, "--as-published",
+        "what YALL1 does"));
+  }
+  TRY(need(!o.settings.has("--reweight") || board.objective.basis == recon::BasisKind::identity, "--reweight",
            "is for pictures of few lit pixels, expected --basis identity"));
-  return check_distance(o, solver);
+  return check_distance(board);
 }
 
 }  // namespace
@@ -267,7 +182,6 @@ hal::Result<void> check_solver_options(const ReconstructOptions& o) {
 void add_reconstruct_options(OptionList& options, ReconstructOptions& request) {
   add_files(options, request);
   add_problem(options, request);
-  add_plan(options, request);
 }
 
 std::string reconstruct_footer() {
@@ -296,33 +210,17 @@ std::string reconstruct_footer() {
 }
 
 hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
-  TRY(check_solver_options(o));
+  ProblemStatement problem{*picture_size_from(o.size), {}};
+  Board& board = problem.board;
+  TRY(o.settings.apply(board));
+  TRY(check_solver_options(o, board));
   TRY(check_ending("--out", o.out, ".npy", true));
   TRY(check_ending("--png", o.png, ".png", false));
   TRY(check_not_input("--out", o.out, o));
-  ProblemStatement problem;
-  problem.size = *picture_size_from(o.size);
-  problem.objective.basis = *recon::kind_of(recon::basis_names(), o.basis);
-  if (o.nonnegative) problem.objective.constraint = recon::ConstraintKind::nonnegative;
-  if (const auto box = interval_from(o.box)) {
-    problem.objective.constraint = recon::ConstraintKind::box;
-    problem.objective.lo = box->lo;
-    problem.objective.hi = box->hi;
-  }
-  problem.objective.epsilon = o.epsilon;
-  problem.plan.solver = recon::solver_named(o.solver);
-  if (o.as_published) problem.plan.solver = published_of(*problem.plan.solver);
-  problem.plan.warm_start = o.start == "warm";
-  problem.plan.op = recon::kind_of(recon::operator_names(), o.op);
-  problem.plan.threads = o.threads;
-  problem.plan.rank = o.rank.value_or(0);
-  problem.plan.l1_reweighting = o.reweight.value_or(0.0);
-  problem.plan.measure_gap = true;
-  problem.plan.precision = o.precision == "f64" ? recon::Precision::f64 : recon::Precision::f32;
-  problem.plan.iterations = o.iterations.value_or(problem.plan.iterations);
-  problem.plan.rho = o.rho.value_or(problem.plan.rho);
-  problem.plan.relaxation = o.relaxation.value_or(problem.plan.relaxation);
-  TRY(check_pair(problem));
+  if (o.nonnegative) board.objective.constraint = recon::ConstraintKind::nonnegative;
+  if (o.as_published) board.plan.solver = published_of(*board.plan.solver);
+  board.plan.measure_gap = true;
+  TRY(check_pair(board));
   return problem;
 }
 

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "firmware/app/option_list.hpp"
+#include "firmware/eye/board.hpp"
 #include "hal/result.hpp"
-#include "recon/reconstructor.hpp"
 
 namespace compueye::firmware {
 
@@ -18,24 +17,10 @@ struct ReconstructOptions {
   std::string out;      ///< empty: not written
   std::string png;      ///< empty: not written
   std::string size;     ///< "HxW"
-  std::string solver = "admm";
-  std::string basis = "identity";
-  std::string precision = "f32";
-  std::string start = "cold";
-  std::string op = "auto";
-  int threads = 1;
-  std::string box;  ///< "LO,HI", empty: no box
+  Overrides settings;   ///< of a Board that is as it is by itself
   bool nonnegative = false;
-  std::optional<int> iterations;
-  std::optional<double> lambda;
-  std::optional<double> sigma;  ///< of a sample of weight one
+  bool as_published = false;
   bool lambda_from_samples = false;
-  std::optional<double> reweight;
-  std::optional<double> epsilon;  ///< bound of ||W^(1/2)(Ax-y)||: adm and omp
-  std::optional<int> rank;        ///< tsvd
-  bool as_published = false;      ///< adm
-  std::optional<double> rho;
-  std::optional<double> relaxation;
 };
 
 void add_reconstruct_options(OptionList& options, ReconstructOptions& request);
@@ -46,8 +31,7 @@ void add_reconstruct_options(OptionList& options, ReconstructOptions& request);
 /// What is to be solved, but for lambda by rule, which needs the response.
 struct ProblemStatement {
   PictureSize size;
-  recon::Objective objective;
-  recon::Plan plan;
+  Board board;  ///< only its [reconstruction]; sigma is that of a sample of weight one
 };
 
 /// Error usage: options that exclude each other, a solver that has no such basis or constraint, a file name with the

@@ -28,26 +28,25 @@ std::int64_t count(std::span<const FrameRecord> frames, recon::Health health) {
   return std::count_if(frames.begin(), frames.end(), [&](const FrameRecord& r) { return r.info.health == health; });
 }
 
-/// What lambda is, and where it is from.
-std::string lambda_sentence(const ReconstructOptions& o) {
-  if (!o.sigma) return "{objective.lambda:4} by hand";
-  return o.lambda_from_samples ? "{objective.lambda:4} by risk of the first frame, sigma {objective.sigma:4}"
-                               : "{objective.lambda:4} by rule from sigma {objective.sigma:4}";
-}
-
-std::string lambda_origin(const ReconstructOptions& o) {
-  if (!o.sigma) return "hand";
-  return o.lambda_from_samples ? "risk" : "rule";
+/// Where lambda is from, a word and a sentence with what it is.
+struct LambdaOrigin {
+  std::string word, sentence;
+};
+LambdaOrigin lambda_origin(const ReconstructOptions& o) {
+  if (!o.settings.has("--sigma")) return {"hand", "{objective.lambda:4} by hand"};
+  if (!o.lambda_from_samples) return {"rule", "{objective.lambda:4} by rule from sigma {objective.sigma:4}"};
+  return {"risk", "{objective.lambda:4} by risk of the first frame, sigma {objective.sigma:4}"};
 }
 
 /// What says how far a solver may stay from y, and its value.
-void add_distance(const ReconstructOptions& o, const recon::Plan& plan, Figures& f) {
-  if (o.epsilon) {
+void add_distance(const ReconstructOptions& o, const recon::Reconstructor& r, Figures& f) {
+  const std::string lambda = lambda_origin(o).sentence;
+  if (r.objective().epsilon) {
     f.line("epsilon", "{objective.epsilon:4}");
-  } else if (plan.solver->rank == recon::RankUse::singular_values) {
-    f.line("rank", o.rank ? "{rank:,} by hand" : "{rank:,} singular values: s^2 >= " + lambda_sentence(o));
+  } else if (r.plan().solver->rank == recon::RankUse::singular_values) {
+    f.line("rank", o.settings.has("--rank") ? "{rank:,} by hand" : "{rank:,} singular values: s^2 >= " + lambda);
   } else {
-    f.line("lambda", lambda_sentence(o));
+    f.line("lambda", lambda);
   }
 }
 
@@ -59,15 +58,15 @@ Figures point_figures(const recon::OperatingPoint& point) {
           {"iterations", point.iterations}};
 }
 
-Figures objective_figures(const ReconstructOptions& o, const recon::Objective& objective) {
+Figures objective_figures(const ReconstructOptions& o, std::optional<double> sigma, const recon::Objective& objective) {
   const bool box = objective.constraint == recon::ConstraintKind::box;
   return {{"constraint", name(objective.constraint)},
           {"lo", box ? Value(objective.lo) : Value()},
           {"hi", box ? Value(objective.hi) : Value()},
           {"lambda", objective.lambda},
-          {"epsilon", o.epsilon},
-          {"lambda_by", lambda_origin(o)},
-          {"sigma", o.sigma}};
+          {"epsilon", objective.epsilon},
+          {"lambda_by", lambda_origin(o).word},
+          {"sigma", sigma}};
 }
 
 Figures frame_figures(const FrameRecord& record) {
@@ -107,7 +106,7 @@ void add_written(const ReconstructOptions& o, bool many, Figures& f) {
   if (!o.png.empty()) f.line("written", many ? "{written.png}, numbered by frame" : "{written.png}");
 }
 
-void add_problem(const ReconstructOptions& o, const recon::Reconstructor& r, Figures& f) {
+void add_problem(const ReconstructOptions& o, std::optional<double> sigma, const recon::Reconstructor& r, Figures& f) {
   const bool factor = recon::uses_factor(r.operating_point().solver);
   const bool box = r.objective().constraint == recon::ConstraintKind::box;
   f.add("response", o.response).add("samples", o.samples);
@@ -115,10 +114,10 @@ void add_problem(const ReconstructOptions& o, const recon::Reconstructor& r, Fig
   f.add("operating_point", point_figures(r.operating_point()), "operating point",
         "{operating_point.solver}, {operating_point.basis} basis, A as {operating_point.operator}, "
         "{operating_point.precision}, {operating_point.iterations} iterations");
-  f.add("objective", objective_figures(o, r.objective()), "constraint",
+  f.add("objective", objective_figures(o, sigma, r.objective()), "constraint",
         box ? "box [[{objective.lo}, {objective.hi}]]" : "{objective.constraint}");
   f.add("rho", factor ? Value(r.plan().rho) : Value()).add("rank", r.plan().rank > 0 ? Value(r.plan().rank) : Value());
-  add_distance(o, r.plan(), f);
+  add_distance(o, r, f);
   if (factor) f.line("rho", "{rho:4}");
   f.add("relaxation", r.plan().relaxation).add("max_reweighted", r.plan().max_reweighted);
   f.add("rows", r.image_rows()).add("cols", r.image_cols()).add("channels", r.channels());
@@ -138,11 +137,11 @@ void add_gap(std::span<const FrameRecord> frames, Figures& f) {
 
 }  // namespace
 
-Figures figures_of(const ReconstructOptions& o, const recon::Reconstructor& r, double setup_s,
-                   std::span<const FrameRecord> frames) {
+Figures figures_of(const ReconstructOptions& o, std::optional<double> sigma, const recon::Reconstructor& r,
+                   double setup_s, std::span<const FrameRecord> frames) {
   const std::string of_frames = frames.size() > 1 ? " (median)" : "";
   Figures f;
-  add_problem(o, r, f);
+  add_problem(o, sigma, r, f);
   f.add("frames", frames.size(), "frames", "{:,}");
   f.add("setup_s", setup_s, "set-up", "{:duration}");
   f.add("median_frame_ms", median(frames, [](const FrameRecord& each) { return each.solve_ms; }), "time a frame",

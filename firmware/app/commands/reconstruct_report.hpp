@@ -18,8 +18,9 @@ struct FrameRecord {
 };
 
 /// Everything that `compueye reconstruct` tells of a run: of `frames`, whose records they are (at least one), with
-/// every rule that `reconstructor` resolved.
-[[nodiscard]] Figures figures_of(const ReconstructOptions& options, const recon::Reconstructor& reconstructor,
-                                 double setup_s, std::span<const FrameRecord> frames);
+/// every rule that `reconstructor` resolved. `sigma`: what lambda is from, if not by hand.
+[[nodiscard]] Figures figures_of(const ReconstructOptions& options, std::optional<double> sigma,
+                                 const recon::Reconstructor& reconstructor, double setup_s,
+                                 std::span<const FrameRecord> frames);
 
 }  // namespace compueye::firmware

@@ -93,6 +93,9 @@ struct Row : Setting {
   }
   Row& shown(std::optional<SettingValue> (*how)(const Board&)) { return show = how, *this; }
   Row& overrules(void (*what)(Board&)) { return overrule = what, *this; }
+  Row& only_of(bool (*solvers)(const recon::SolverRow&), std::string_view what) {
+    return taken_by = solvers, feature = what, *this;
+  }
 };
 
 /// The row of the member at the end of this path, field<&Board::eye, &hal::EyeGeometry::rows>("rows", "..."): a `whole`

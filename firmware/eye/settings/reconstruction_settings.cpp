@@ -3,6 +3,7 @@
 
 #include "firmware/eye/settings/field.hpp"
 #include "firmware/eye/settings/setting.hpp"
+#include "recon/setup/solver_row.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
@@ -10,6 +11,7 @@ namespace {
 
 using recon::Objective;
 using recon::Plan;
+using recon::SolverRow;
 using V = SettingValue;
 
 constexpr std::string_view section = "reconstruction";
@@ -92,6 +94,11 @@ void add_weight(std::vector<Setting>& all) {
        field<&Board::plan, &Plan::rho>("rho", "ADMM penalty; left out, it follows from the response")
            .within({1e-12, 1e12})
            .option_of("reconstruct", "--rho", "V")
+           .only_of(
+               [](const SolverRow& row) {
+                 return row.rho == recon::RhoUse::penalty || row.rho == recon::RhoUse::inverse_step;
+               },
+               "a penalty or an inverse step")
            .shown([](const Board& b) { return b.plan.rho > 0.0 ? value_of(b.plan.rho) : std::nullopt; })});
 }
 
@@ -100,7 +107,8 @@ void add_way(std::vector<Setting>& all) {
       {field<&Board::plan, &Plan::relaxation>("relaxation", "over-relaxation of admm, cp and pdhg")
            .within({0, 2, true, true})
            .otherwise(V{1.7})
-           .option_of("reconstruct", "--relaxation", "V"),
+           .option_of("reconstruct", "--relaxation", "V")
+           .only_of([](const SolverRow& row) { return row.relaxes; }, "over-relaxation"),
        Row("operator",
            "how A is applied; auto is the quickest that keeps every digit, bf16 and int8 round the response")
            .one_of(operator_words())
@@ -110,7 +118,8 @@ void add_way(std::vector<Setting>& all) {
        choice_field<start_names, &Board::plan, &Plan::warm_start>(
            "start", "warm, with pdhg: a frame goes on from the last one, unless it has changed too much")
            .otherwise("cold")
-           .option_of("reconstruct", "--start", "NAME"),
+           .option_of("reconstruct", "--start", "NAME")
+           .only_of([](const SolverRow& row) { return row.starts_warm(); }, "a last frame"),
        field<&Board::plan, &Plan::threads>("threads", "that share a frame's work; pictures are the same bit for bit")
            .within({1, recon::WorkerThreads::most})
            .otherwise(1)
@@ -125,17 +134,21 @@ void add_what_no_board_says(std::vector<Setting>& all) {
                                         "tsvd: how many singular values to keep (with --sigma: by rule); pdhg: how "
                                         "many modes to treat exactly (400)")
            .within({1, 1000000})
-           .option_of("reconstruct", "--rank", "R"),
+           .option_of("reconstruct", "--rank", "R")
+           .only_of([](const SolverRow& row) { return row.rank != recon::RankUse::none; },
+                    "a number of singular values or modes"),
        field<&Board::objective, &Objective::epsilon>(
            "epsilon", "adm: min ||Psi x||_1 subject to ||W^(1/2)(Ax-y)|| <= V; omp: stop there; in white pixels")
            .within({0, 1e12})
-           .option_of("reconstruct", "--epsilon", "V"),
+           .option_of("reconstruct", "--epsilon", "V")
+           .only_of([](const SolverRow& row) { return row.takes_epsilon; }, "a bound of the residual"),
        field<&Board::plan, &Plan::l1_reweighting>("reweight",
                                                   "admm in pixels: as many iterations again with weights 2V / (|x| + "
                                                   "V), for pictures of few lit pixels; V about a tenth of their "
                                                   "brightness")
            .within({1e-12, 1e12})
-           .option_of("reconstruct", "--reweight", "V")});
+           .option_of("reconstruct", "--reweight", "V")
+           .only_of([](const SolverRow& row) { return row.reweights; }, "a second pass")});
 }
 
 }  // namespace

@@ -75,6 +75,9 @@ struct Setting {
   std::optional<SettingValue> (*show)(const Board&) = nullptr;  ///< nothing: left to its rule
   /// What else a value from a command line changes, because it is a person's last word.
   void (*overrule)(Board&) = nullptr;
+  /// Of which solvers it is; null: every one. `feature` is what the others have not, "over-relaxation".
+  bool (*taken_by)(const recon::SolverRow& solver) = nullptr;
+  std::string_view feature = {};
 
   /// What a good value is, to end "expected ...": "a whole number from 1 to 4096".
   [[nodiscard]] std::string expectation() const;
