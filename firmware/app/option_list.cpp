@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <limits>
 #include <system_error>
 #include <type_traits>
 
+#include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/settings/setting.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/words.hpp"
@@ -52,7 +52,8 @@ Check readable(const Target& target) {
               ok = whole<T>(text).has_value();
             }
             if (ok) return std::string();
-            return fmt::format("is '{}', expected a {} number", excerpt(text), real ? "finite" : "whole");
+            return fmt::format("is '{}', expected a {} number{}", excerpt(text), real ? "finite" : "whole",
+                               std::is_unsigned_v<T> ? " of 0 or more" : "");
           });
         }
       },
@@ -124,6 +125,12 @@ void OptionList::settings(std::string_view command, Overrides& overrides) {
   }
 }
 
+void OptionList::scene(SceneChoice& scene, std::uint64_t& noise_seed) {
+  add("--scene", scene.name, "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
+  add("--scene-seed", scene.seed, "which drawing of a built-in scene (default 0)").type("INT");
+  add("--seed", noise_seed, "of the noise (default 0); the same seed gives the same samples").type("INT");
+}
+
 Option& OptionList::at(std::string_view name) {
   return *std::find_if(rows_.begin(), rows_.end(), [&](const Option& row) { return row.name == name; });
 }
@@ -132,6 +139,14 @@ Option& OptionList::put(std::string name, std::variant<Target, Switch> target, s
   const auto* value = std::get_if<Target>(&target);
   Check check = value != nullptr ? readable(*value) : Check();
   return rows_.emplace_back(Option{std::move(name), target, std::move(meaning), {}, std::move(check), {}, {}, false});
+}
+
+Check length_mm() {
+  return [](const std::string& text) {
+    const auto mm = typed_number(text);
+    if (mm && *mm > 0.0 && *mm <= 1e6) return std::string();
+    return fmt::format("is '{}', expected mm above 0 and at most 1000000", excerpt(text));
+  };
 }
 
 Check one_of(std::vector<std::string_view> known) {
@@ -162,11 +177,6 @@ Check picture_size() {
 hal::Result<void> need(bool ok, std::string_view option, std::string sentence) {
   if (ok) return {};
   return hal::fail(hal::ErrorCode::usage, std::string(option), std::move(sentence));
-}
-
-hal::Result<void> need_length(std::string_view option, const std::optional<double>& mm) {
-  const bool ok = !mm || (std::isfinite(*mm) && *mm > 0.0 && *mm <= 1e6);
-  return need(ok, option, fmt::format("is {}, expected mm above 0 and at most 1000000", mm.value_or(0.0)));
 }
 
 std::optional<PictureSize> picture_size_from(std::string_view text) noexcept {

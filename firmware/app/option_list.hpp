@@ -20,6 +20,7 @@ struct SolverRow;
 namespace compueye::firmware {
 
 struct Board;
+struct SceneChoice;
 struct Setting;
 
 /// `what` is given, but this solver is none of those that take it: error usage at the option, naming them.
@@ -45,7 +46,7 @@ class Overrides {
 using Check = std::function<std::string(const std::string&)>;
 
 /// Where the value of an option goes once it is understood. Lists take commas between their elements.
-using Target = std::variant<std::string*, int*, std::int64_t*, double*, std::optional<std::string>*,
+using Target = std::variant<std::string*, int*, std::int64_t*, std::uint64_t*, double*, std::optional<std::string>*,
                             std::optional<int>*, std::optional<std::int64_t>*, std::optional<std::uint64_t>*,
                             std::optional<double>*, std::vector<std::string>*, std::vector<double>*>;
 
@@ -90,6 +91,9 @@ class OptionList {
   /// The options of all settings of a board that `command` takes; see firmware/eye/settings.
   void settings(std::string_view command, Overrides& overrides);
 
+  /// What an eye looks at, but for its distance, and the seed of the noise.
+  void scene(SceneChoice& scene, std::uint64_t& noise_seed);
+
   /// One that was added.
   [[nodiscard]] Option& at(std::string_view name);
 
@@ -105,6 +109,8 @@ class OptionList {
 
 // Checks whose sentence says what was given and what was expected.
 
+/// A length in mm.
+[[nodiscard]] Check length_mm();
 /// One of `known`; for any other name the nearest is suggested.
 [[nodiscard]] Check one_of(std::vector<std::string_view> known);
 /// "admm (default), adm or cp": the words of one_of() for the meaning of an option.
@@ -114,8 +120,6 @@ class OptionList {
 
 /// Error usage at `option` unless `ok`: for what no single value can tell.
 [[nodiscard]] hal::Result<void> need(bool ok, std::string_view option, std::string sentence);
-/// A length in mm, where one is given.
-[[nodiscard]] hal::Result<void> need_length(std::string_view option, const std::optional<double>& mm);
 
 struct PictureSize {
   int rows = 0;  ///< H >= 1

@@ -148,7 +148,7 @@ Result<Comparison> head_of(const Board& board, const CompareOptions& options, Co
   head.exact = options.exact;
   head.sigma = board.noise_sigma();
   head.seed = options.seed;
-  head.scene_seed = options.scene_seed;
+  head.scene_seed = options.scene.seed;
   head.channels = samples.response.rows();
   head.seeing = static_cast<int>(samples.response.seeing_rows().size());
   head.threads = board.plan.threads;

@@ -7,6 +7,7 @@
 
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/picture_quality.hpp"
+#include "firmware/eye/scene_choice.hpp"
 #include "firmware/text/figures.hpp"
 #include "hal/clock.hpp"
 #include "hal/image.hpp"
@@ -18,9 +19,8 @@ namespace compueye::firmware {
 
 /// What is compared, and on which samples of a board's eye.
 struct CompareOptions {
-  std::string scene;  ///< empty: the board's
-  std::int64_t scene_seed = 0;
-  std::int64_t seed = 0;             ///< of the noise
+  SceneChoice scene;                 ///< on the object plane
+  std::uint64_t seed = 0;            ///< of the noise
   bool exact = false;                ///< y = A x + n instead of the simulated eye
   std::string response;              ///< file of another A for the board's eye; empty: the nominal one
   std::vector<std::string> solvers;  ///< empty: all
@@ -61,8 +61,8 @@ struct Comparison {
   std::string scene;
   bool exact = false;
   double sigma = 0.0;
-  std::int64_t seed = 0;
-  std::int64_t scene_seed = 0;
+  std::uint64_t seed = 0;
+  std::uint64_t scene_seed = 0;
   int channels = 0;
   int seeing = 0;
   int threads = 1;  ///< that shared a frame's work

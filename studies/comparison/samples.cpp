@@ -62,21 +62,20 @@ Result<void> take_from_eye(const Board& board, const sim::Scene& scene, std::uin
 }  // namespace
 
 Result<CompareSamples> take_samples(const Board& board, const CompareOptions& o, const recon::Progress& progress) {
-  const sim::Scene scene = TRY(choose_scene(board, {o.scene, static_cast<std::uint64_t>(o.scene_seed), std::nullopt}));
+  const sim::Scene scene = TRY(choose_scene(board, o.scene));
   hal::Image truth = TRY(sim::scene_truth(scene, board.object));
   recon::Response response = TRY(response_of(board, o, progress));
   std::vector<std::uint8_t> sees(static_cast<std::size_t>(board.eye.ommatidia()), 0);
   for (const std::int32_t m : response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
   if (!board.sensor.dead.empty()) response = response.without_rows(board.sensor.dead);
   CompareSamples samples{scene.name, std::move(truth), std::move(response), {}, {}, {}};
-  const auto seed = static_cast<std::uint64_t>(o.seed);
   if (o.exact) {
-    take_exact(board.noise_sigma(), seed, samples);
+    take_exact(board.noise_sigma(), o.seed, samples);
   } else {
-    TRY(take_from_eye(board, scene, seed, sees, samples));
+    TRY(take_from_eye(board, scene, o.seed, sees, samples));
   }
   // A lattice without an interommatidial angle has no conventional eye; the comparison goes on without it.
-  if (auto conventional = conventional_picture(board, scene, seed)) samples.conventional = std::move(*conventional);
+  if (auto conventional = conventional_picture(board, scene, o.seed)) samples.conventional = std::move(*conventional);
   return samples;
 }
 

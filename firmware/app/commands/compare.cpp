@@ -31,9 +31,7 @@ struct CompareRequest : CompareOptions {
 };
 
 Result<void> check(const CompareRequest& o) {
-  TRY(need(!o.board.empty(), "--board", "is missing, for example --board boards/sim-8x8"));
-  TRY(need(o.seed >= 0, "--seed", "is negative, expected 0 or more"));
-  return need(o.scene_seed >= 0, "--scene-seed", "is negative, expected 0 or more");
+  return need(!o.board.empty(), "--board", "is missing, for example --board boards/sim-8x8");
 }
 
 /// What the table shows of a row beside its figures.
@@ -146,9 +144,7 @@ Result<void> run_compare(const CompareRequest& o, Session& session) {
 
 void add_samples(OptionList& options, CompareRequest& o) {
   options.add("--board", o.board, "folder of the board, such as boards/sim-8x8");
-  options.add("--scene", o.scene, "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
-  options.add("--scene-seed", o.scene_seed, "which drawing of a built-in scene (default 0)");
-  options.add("--seed", o.seed, "of the noise (default 0)");
+  options.scene(o.scene, o.seed);
   options.flag("--exact", o.exact,
                "y = A x + n with the very A that is inverted, instead of the simulated eye: an inverse crime, for "
                "figures that others published so");

@@ -28,12 +28,10 @@ struct RecordRequest {
   std::string out;
   std::optional<std::int64_t> frames;  ///< 0: until stopped; absent, and no seconds: the board's frames_per_scene
   std::optional<double> seconds;
-  std::string scene;  ///< empty: the board's
-  std::int64_t scene_seed = 0;
-  std::int64_t seed = 0;
-  std::optional<double> scene_distance_mm;
-  Overrides overrides;    ///< distance
-  bool lossless = false;  ///< frames as fast as they can be made and written, instead of at the board's rate
+  SceneChoice scene;
+  std::uint64_t seed = 0;  ///< of the noise
+  Overrides overrides;     ///< distance
+  bool lossless = false;   ///< frames as fast as they can be made and written, instead of at the board's rate
 };
 
 Result<void> check(const RecordRequest& o) {
@@ -43,11 +41,8 @@ Result<void> check(const RecordRequest& o) {
   TRY(need(!o.out.empty(), "--out", "is missing, for example --out eye.rec"));
   TRY(need(count >= 0 && count <= 1'000'000'000'000'000, "--frames",
            fmt::format("is {}, expected 0 (until stopped) to 1e15", count)));
-  TRY(need(std::isfinite(time) && time > 0.0 && time <= 1e8, "--seconds",
-           fmt::format("is {}, expected a number above 0 and at most 1e8", time)));
-  TRY(need(o.seed >= 0, "--seed", "is negative, expected 0 or more"));
-  TRY(need(o.scene_seed >= 0, "--scene-seed", "is negative, expected 0 or more"));
-  return need_length("--scene-distance", o.scene_distance_mm);
+  return need(std::isfinite(time) && time > 0.0 && time <= 1e8, "--seconds",
+              fmt::format("is {}, expected a number above 0 and at most 1e8", time));
 }
 
 /// How far a recording has to go; 0 = no such limit.
@@ -132,12 +127,11 @@ Result<void> record(const RecordRequest& o, Session& session) {
   Board board = TRY(load_board(o.board));
   TRY(check_new_recording(o.out));
   TRY(o.overrides.apply(board));
-  sim::Scene scene = TRY(choose_scene(board, {o.scene, static_cast<std::uint64_t>(o.scene_seed), o.scene_distance_mm}));
+  sim::Scene scene = TRY(choose_scene(board, o.scene));
   const std::string scene_name = board.source.simulated() ? scene.name : "an unknown scene";
-  const auto eye = TRY(board_source(
-      board, {std::move(scene), static_cast<std::uint64_t>(o.seed), o.lossless, std::nullopt}, session.clock()));
+  const auto eye = TRY(board_source(board, {std::move(scene), o.seed, o.lossless, std::nullopt}, session.clock()));
   const auto source =
-      TRY(with_recorder({o.out, scene_name, o.scene_seed, o.seed, o.lossless}, board, *eye, session.clock()));
+      TRY(with_recorder({o.out, scene_name, o.scene.seed, o.seed, o.lossless}, board, *eye, session.clock()));
   TRY(source->start());
   const Recorded recorded = TRY(read_on(*source, goal_of(o, board), session));
   TRY(session.print(report_of(board, scene_name, *source, recorded)));
@@ -151,11 +145,9 @@ Action declare(OptionList& options) {
   options.add("--out", o->out, "the recording, such as eye.rec; an older one is never overwritten");
   options.add("--frames", o->frames, "end after so many; 0: until stopped (default: the board's frames_per_scene)");
   options.add("--seconds", o->seconds, "end after so long").excludes("--frames");
-  options.add("--scene", o->scene, "a built-in scene or a PNG file (default: the board's)");
-  options.add("--scene-seed", o->scene_seed, "which drawing of a built-in scene (default 0)");
-  options.add("--seed", o->seed, "of the noise (default 0); the same seed gives the same samples");
+  options.scene(o->scene, o->seed);
   options.settings("record", o->overrides);
-  options.add("--scene-distance", o->scene_distance_mm, "of the scene alone in mm");
+  options.add("--scene-distance", o->scene.distance_mm, "of the scene alone in mm").where(length_mm());
   options.flag("--lossless", o->lossless,
                "as fast as frames can be made and written, each waited for (default: at the board's rate)");
   options.json("print one object and nothing else on stdout");

@@ -69,7 +69,7 @@ class BoardRun {
   [[nodiscard]] PipelineSettings pipeline_settings() const;
   /// What is in front of an eye on a cable is known only when it is named.
   [[nodiscard]] bool knows_scene() const {
-    return options_.knows_scene() && (board_.source.simulated() || !options_.scene.empty());
+    return options_.knows_scene() && (board_.source.simulated() || !options_.scene.name.empty());
   }
   [[nodiscard]] std::uint64_t frames() const {
     return static_cast<std::uint64_t>(
@@ -101,8 +101,7 @@ Result<void> BoardRun::prepare() {
   if (!options_.record.empty()) TRY(check_new_recording(options_.record));
   TRY(need(options_.sheet.empty() || knows_scene(), "--sheet",
            "needs --scene with an eye on a cable: it compares the picture with what the eye looks at"));
-  scene_ = TRY(choose_scene(
-      board_, {options_.scene, static_cast<std::uint64_t>(options_.scene_seed), options_.scene_distance_mm}));
+  scene_ = TRY(choose_scene(board_, options_.scene));
   truth_ = TRY(sim::scene_truth(scene_, board_.object));
   report_.scene = knows_scene() ? scene_.name : "not known";
   report_.seed = options_.seed;
@@ -224,7 +223,7 @@ Result<void> BoardRun::compare() {
   if (!knows_scene()) return {};
   TRY(measure_quality());
   if (keeper_->delivered() == 0) return {};
-  auto conventional = conventional_picture(board_, scene_, static_cast<std::uint64_t>(options_.seed));
+  auto conventional = conventional_picture(board_, scene_, options_.seed);
   if (!conventional) {
     note("the conventional eye is left out: " + conventional.error().text());
   } else {

@@ -7,6 +7,7 @@
 #include "drivers/recording/replay_source.hpp"
 #include "firmware/app/option_list.hpp"
 #include "firmware/app/session.hpp"
+#include "firmware/eye/scene_choice.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
@@ -16,13 +17,11 @@ struct RunOptions {
   std::string board;
   std::optional<std::int64_t> frames;  ///< delivered pictures, 0 = until stopped; absent: the board's frames_per_scene
   std::optional<double> deadline_ms;   ///< > 0
-  std::string scene;                   ///< empty: the board's
-  std::int64_t seed = 0;               ///< of the noise, >= 0
-  std::int64_t scene_seed = 0;         ///< of a built-in scene, >= 0
-  std::optional<double> scene_distance_mm;  ///< of the scene alone
-  std::string out;                          ///< folder for pictures
-  std::string format;                       ///< a word of sink_formats(); empty: png with `out`, else none
-  std::optional<bool> show;                 ///< absent: when stdout is a terminal
+  SceneChoice scene;
+  std::uint64_t seed = 0;    ///< of the noise
+  std::string out;           ///< folder for pictures
+  std::string format;        ///< a word of sink_formats(); empty: png with `out`, else none
+  std::optional<bool> show;  ///< absent: when stdout is a terminal
   bool lossless = false;
   std::string replay;       ///< a recording instead of the board's eye; empty: none
   std::string replay_pace;  ///< fast or recorded; empty: fast
@@ -45,7 +44,7 @@ struct RunOptions {
     return lossless || (replays() && pace() == recording::ReplayPace::fast);
   }
   /// Whether the scene in front of the eye is known, to compare pictures with: a recording's is only when it is named.
-  [[nodiscard]] bool knows_scene() const noexcept { return !replays() || !scene.empty(); }
+  [[nodiscard]] bool knows_scene() const noexcept { return !replays() || !scene.name.empty(); }
 };
 
 /// `compueye run`: makes the board ready, runs the pipeline on it and reports. A run that fails after its first frame

@@ -4,7 +4,6 @@
 
 #include "firmware/app/command.hpp"
 #include "firmware/app/commands/run.hpp"
-#include "firmware/eye/scene_choice.hpp"
 #include "firmware/sinks/sink_list.hpp"
 
 namespace compueye::firmware {
@@ -42,9 +41,7 @@ std::string footer() {
 }
 
 void add_scene_options(OptionList& options, RunOptions& o) {
-  options.add("--scene", o.scene, "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
-  options.add("--scene-seed", o.scene_seed, "which drawing of a built-in scene (default 0)");
-  options.add("--seed", o.seed, "of the noise (default 0); the same seed gives the same samples");
+  options.scene(o.scene, o.seed);
   options
       .add("--replay", o.replay,
            "a recording instead of the board's eye, all of it unless --frames says less; name its --scene to "
@@ -53,8 +50,10 @@ void add_scene_options(OptionList& options, RunOptions& o) {
   options.add("--pace", o.replay_pace, "of a replay: fast (default; every frame is waited for) or recorded")
       .where(one_of({"fast", "recorded"}));
   options.add("--record", o.record, "file for the raw frames besides, for --replay; never overwritten");
-  options.add("--scene-distance", o.scene_distance_mm,
-              "of the scene alone in mm: the reconstruction goes on expecting it on the object plane");
+  options
+      .add("--scene-distance", o.scene.distance_mm,
+           "of the scene alone in mm: the reconstruction goes on expecting it on the object plane")
+      .where(length_mm());
 }
 
 void add_solver_options(OptionList& options, RunOptions& o) {
@@ -98,12 +97,9 @@ Action declare(OptionList& options) {
 }  // namespace
 
 Result<void> RunOptions::check() const {
-  constexpr double longest_mm = 1e6, longest_ms = 1e9, most_frames = 1e15;
+  constexpr double longest_ms = 1e9, most_frames = 1e15;
   for (const auto& checked :
        {within("--frames", frames, 0, false, most_frames), within("--deadline", deadline_ms, 0, true, longest_ms),
-        within("--seed", std::optional(seed), 0, false, 9e18),
-        within("--scene-seed", std::optional(scene_seed), 0, false, 9e18),
-        within("--scene-distance", scene_distance_mm, 0, true, longest_mm),
         need(!(deadline_ms && lossless), "--deadline",
              "cannot go with --lossless, where frames wait for as long as it takes; leave one of them out"),
         need(!(deadline_ms && replays() && waits_for_frames()), "--deadline",

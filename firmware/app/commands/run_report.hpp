@@ -31,7 +31,7 @@ struct LadderRun {
 struct RunReport {
   std::string source;  ///< back end and serial
   std::string scene;
-  std::int64_t seed = 0;
+  std::uint64_t seed = 0;
   bool lossless = false;
   double setup_s = 0.0;
   std::optional<DeadlineChoice> deadline;  ///< by trial

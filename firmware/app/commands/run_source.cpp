@@ -65,12 +65,12 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
     made.source_ = std::move(replay);
     return made;
   }
-  EyeWanted wanted{scene, static_cast<std::uint64_t>(options.seed), options.lossless, std::nullopt};
+  EyeWanted wanted{scene, options.seed, options.lossless, std::nullopt};
   // Without a limit the frames read ahead of the last one would be made only to be thrown away.
   if (options.lossless && frames > 0) wanted.frame_limit = frames;
   made.source_ = TRY(board_source(board, std::move(wanted), clock));
   if (options.record.empty()) return made;
-  made.recorder_ = TRY(with_recorder({options.record, scene.name, options.scene_seed, options.seed, options.lossless},
+  made.recorder_ = TRY(with_recorder({options.record, scene.name, options.scene.seed, options.seed, options.lossless},
                                      board, *made.source_, clock));
   return made;
 }

@@ -19,8 +19,8 @@ namespace compueye::firmware {
 struct RecordingRequest {
   std::string path;
   std::string scene;
-  std::int64_t scene_seed = 0;
-  std::int64_t seed = 0;
+  std::uint64_t scene_seed = 0;
+  std::uint64_t seed = 0;
   bool lossless = false;  ///< waits for the disk
 };
 

@@ -31,13 +31,11 @@ using hal::Result;
 /// What `compueye simulate` was asked for.
 struct SimulateRequest {
   std::string board;
-  std::string scene;  ///< empty: the board's
-  std::int64_t scene_seed = 0;
+  SceneChoice scene;
   std::string out;  ///< y.npy
   std::int64_t frames = 1;
-  std::int64_t seed = 0;
-  std::optional<double> scene_distance_mm;
-  Overrides overrides;  ///< distance
+  std::uint64_t seed = 0;  ///< of the noise
+  Overrides overrides;     ///< distance
   bool noise_free = false;
   bool codes = false;
   std::string truth;
@@ -47,9 +45,6 @@ struct SimulateRequest {
 
 Result<void> check(const SimulateRequest& o) {
   TRY(need(o.frames >= 1 && o.frames <= 1'000'000, "--frames", fmt::format("is {}, expected 1 to 1000000", o.frames)));
-  TRY(need(o.seed >= 0, "--seed", "is negative, expected 0 or more"));
-  TRY(need(o.scene_seed >= 0, "--scene-seed", "is negative, expected 0 or more"));
-  TRY(need_length("--scene-distance", o.scene_distance_mm));
   return need(!o.out.empty() || !o.truth.empty() || o.explain, "--out",
               "is missing: name the .npy file for the samples, for example --out y.npy");
 }
@@ -105,7 +100,7 @@ void append(const hal::SampleBlock& block, const Board& board, bool codes, Sampl
 
 Result<Samples> take(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
   hal::VirtualClock clock;
-  auto settings = simulated_eye_settings(board, scene, static_cast<std::uint64_t>(o.seed));
+  auto settings = simulated_eye_settings(board, scene, o.seed);
   if (o.noise_free) settings.steps_off.emplace_back("read noise");
   const auto eye = TRY(sim::SimulatedEye::create(std::move(settings), clock));
   TRY(eye->start());
@@ -168,8 +163,7 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
   TRY(check(request));
   Board board = TRY(load_board(request.board));
   TRY(request.overrides.apply(board));
-  const sim::Scene scene = TRY(
-      choose_scene(board, {request.scene, static_cast<std::uint64_t>(request.scene_seed), request.scene_distance_mm}));
+  const sim::Scene scene = TRY(choose_scene(board, request.scene));
   const Samples samples = TRY(take(board, scene, request));
   TRY(write(samples, board, request));
   TRY(write_truth(board, scene, request));
@@ -179,13 +173,11 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
 Action declare(OptionList& options) {
   auto o = std::make_shared<SimulateRequest>();
   options.add("--board", o->board, "folder of the board, such as boards/sim-8x8").required();
-  options.add("--scene", o->scene, "a built-in scene or a PNG file (default: the board's; TOML scenes come later)");
-  options.add("--scene-seed", o->scene_seed, "which drawing of a built-in scene (default 0)");
+  options.scene(o->scene, o->seed);
   options.add("--out", o->out, ".npy file for the samples, (M,) or (frames, M)");
   options.add("--frames", o->frames, "how many (default 1)");
-  options.add("--seed", o->seed, "of the noise (default 0)");
   options.settings("simulate", o->overrides);
-  options.add("--scene-distance", o->scene_distance_mm, "of the scene alone, mm from the lens tip");
+  options.add("--scene-distance", o->scene.distance_mm, "of the scene alone, mm from the lens tip").where(length_mm());
   options.flag("--noise-free", o->noise_free, "exact signals: no read noise, no rounding (with --codes: rounded)");
   options.flag("--codes", o->codes, "raw codes instead of corrected samples");
   options.add("--truth", o->truth, ".npy file for the scene on the object plane's pixels, (rows, columns)");
