@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -45,6 +46,25 @@ void remove_partials(const fs::path& target) {
 }
 
 }  // namespace
+
+hal::Result<void> print_text(const std::string& text, std::FILE* to, const std::string& name) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), to) == text.size() && std::fflush(to) == 0) return {};
+  const int cause = errno;
+  return hal::fail(cause == ENOSPC ? hal::ErrorCode::no_space : hal::ErrorCode::io, name,
+                   "cannot write the report: " + std::generic_category().message(cause));
+}
+
+int exit_code(const hal::Error& error) noexcept {
+  return error.code == hal::ErrorCode::usage ? 2 : 1;
+}
+
+int print_error(const hal::Error& error, std::FILE* to) {
+  const std::string line = "compueye: " + visible_text(error.text()) + "\n";
+  // Nothing sensible is left to do when even stderr refuses.
+  if (std::fwrite(line.data(), 1, line.size(), to) == line.size()) std::fflush(to);
+  return exit_code(error);
+}
 
 Session::~Session() {
   end_watching();

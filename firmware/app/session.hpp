@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <cstdio>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -13,12 +14,25 @@
 #include <vector>
 
 #include "firmware/app/progress_reporter.hpp"
-#include "firmware/app/report.hpp"
+#include "firmware/text/figures.hpp"
 #include "hal/clock.hpp"
 #include "hal/result.hpp"
 #include "recon/setup/factor.hpp"
 
 namespace compueye::firmware {
+
+/// Writes `text` and flushes. Errors: no_space or io when the file (stdout on a full disk, a closed pipe) refuses it;
+/// `name` says which.
+[[nodiscard]] hal::Result<void> print_text(const std::string& text, std::FILE* to = stdout,
+                                           const std::string& name = "standard output");
+
+/// What the process returns: 2 for a usage error, 1 for every other failure.
+[[nodiscard]] int exit_code(const hal::Error& error) noexcept;
+
+/// Writes "compueye: place: sentence" and returns exit_code(), so that main() can end with it. Control characters (a
+/// file name may hold a line break or a terminal escape) become visible escapes, so that it is one line whatever it
+/// quotes.
+int print_error(const hal::Error& error, std::FILE* to = stderr);
 
 /// What Ctrl-C (SIGINT), SIGTERM and SIGHUP do to a command.
 enum class OnSignal : std::uint8_t {

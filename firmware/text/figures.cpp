@@ -220,6 +220,22 @@ std::string json_text(const Figures& figures) {
   return json_of(figures).dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+Figures figures_of(const hal::FrameAccount& account) {
+  Figures dropped;
+  for (std::size_t r = 0; r < hal::drop_reason_count; ++r) {
+    const auto reason = static_cast<hal::DropReason>(r);
+    dropped.add(hal::name(reason), account.drops(reason));
+  }
+  return {{"produced", account.produced},
+          {"delivered", account.delivered},
+          {"dropped", std::move(dropped)},
+          {"balanced", account.balanced()}};
+}
+
+Figures figures_of(const hal::Error& error) {
+  return {{"code", hal::name(error.code)}, {"place", error.place}, {"sentence", error.sentence}};
+}
+
 std::string table_of(const Value::List& rows, const std::vector<FigureColumn>& columns, std::string_view missing) {
   if (rows.empty()) return {};
   std::vector<Column> heads;

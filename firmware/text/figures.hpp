@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "firmware/text/table.hpp"
+#include "hal/accounting.hpp"
+#include "hal/result.hpp"
 
 namespace compueye::firmware {
 
@@ -107,6 +109,12 @@ class Figures {
 /// whatever they hold: NaN and infinity become null, bytes that are not UTF-8 (file names) become U+FFFD. Two blanks of
 /// indentation, one line end.
 [[nodiscard]] std::string json_text(const Figures& figures);
+
+/// produced, delivered, dropped (one member a reason, in the enum's order), balanced
+[[nodiscard]] Figures figures_of(const hal::FrameAccount& account);
+
+/// code, place, sentence: what --json prints as the member "error" when a command fails.
+[[nodiscard]] Figures figures_of(const hal::Error& error);
 
 /// A column of a table of figures: its cells are a sentence about those of the row.
 struct FigureColumn {

@@ -11,7 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "firmware/app/report.hpp"
+#include "firmware/app/session.hpp"
+#include "firmware/text/figures.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
 #include "firmware/text/words.hpp"

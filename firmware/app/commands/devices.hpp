@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "firmware/app/report.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/source_list.hpp"
+#include "firmware/text/figures.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {

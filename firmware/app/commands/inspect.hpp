@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "firmware/app/option_list.hpp"
-#include "firmware/app/report.hpp"
 #include "firmware/eye/board.hpp"
+#include "firmware/text/figures.hpp"
 #include "hal/result.hpp"
 #include "recon/core/frame/frame_info.hpp"
 #include "recon/response.hpp"

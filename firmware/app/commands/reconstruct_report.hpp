@@ -4,8 +4,8 @@
 #include <span>
 
 #include "firmware/app/commands/reconstruct_options.hpp"
-#include "firmware/app/report.hpp"
 #include "firmware/eye/picture_quality.hpp"
+#include "firmware/text/figures.hpp"
 #include "recon/reconstructor.hpp"
 
 namespace compueye::firmware {

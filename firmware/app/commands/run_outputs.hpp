@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "firmware/app/commands/run.hpp"
-#include "firmware/app/report.hpp"
+#include "firmware/text/figures.hpp"
 #include "hal/clock.hpp"
 #include "hal/frame_sink.hpp"
 #include "hal/image.hpp"

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "firmware/app/report.hpp"
 #include "firmware/eye/picture_quality.hpp"
 #include "firmware/eye/ready_eye.hpp"
 #include "firmware/operating_points/deadline_choice.hpp"
 #include "firmware/operating_points/point_choice.hpp"
 #include "firmware/pipeline/run_summary.hpp"
+#include "firmware/text/figures.hpp"
 
 namespace compueye::firmware {
 

@@ -16,13 +16,8 @@ using V = SettingValue;
 
 constexpr std::string_view section = "reconstruction";
 constexpr std::string_view all_that_solve = "run compare reconstruct";
-constexpr std::array<recon::Named<recon::Precision>, 2> precisions{
-    {{"f32", recon::Precision::f32}, {"f64", recon::Precision::f64}}};
 constexpr std::array<recon::Named<bool>, 2> starts{{{"cold", false}, {"warm", true}}};
 
-std::span<const recon::Named<recon::Precision>> precision_names() {
-  return precisions;
-}
 std::span<const recon::Named<bool>> start_names() {
   return starts;
 }
@@ -128,7 +123,7 @@ void add_way(std::vector<Setting>& all) {
 
 void add_what_no_board_says(std::vector<Setting>& all) {
   add(all, {},
-      {choice_field<precision_names, &Board::plan, &Plan::precision>("precision", "of every number in the frame")
+      {choice_field<recon::precision_names, &Board::plan, &Plan::precision>("precision", "of every number in the frame")
            .option_of("reconstruct", "--precision", "NAME"),
        field<&Board::plan, &Plan::rank>("rank",
                                         "tsvd: how many singular values to keep (with --sigma: by rule); pdhg: how "
