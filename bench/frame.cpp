@@ -20,11 +20,10 @@
 #include "recon/core/parts/proximal.hpp"
 #include "recon/core/parts/vector_sums.hpp"
 #include "recon/reconstructor.hpp"
-#include "recon/setup/dct_tables.hpp"
+#include "recon/setup/basis_tables.hpp"
 #include "recon/setup/inverse_tables.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/operator_list.hpp"
-#include "recon/setup/parity_classes.hpp"
 
 using namespace compueye;
 namespace core = recon::core;

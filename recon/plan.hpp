@@ -39,7 +39,7 @@ struct Plan {
   /// pays. FrameInfo's objective is the weighted one, without a duality gap. 0: one pass.
   double l1_reweighting = 0.0;
   /// How A is applied; nothing: the quickest form that keeps every digit of the precision
-  /// (recon/setup/operator_choice.hpp). running_sums stands for any number of rows at once. Dense runs in bf16 or int8
+  /// (recon/setup/operator_list.hpp). running_sums stands for any number of rows at once. Dense runs in bf16 or int8
   /// have to be asked for: the problem that is then solved, factor and modes included, is that of the rounded matrix
   /// (recon/setup/quantised_response.hpp).
   std::optional<OperatorKind> op = std::nullopt;

@@ -5,9 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "recon/setup/dct_tables.hpp"
-#include "recon/setup/fourier_tables.hpp"
-#include "recon/setup/smoothing.hpp"
+#include "recon/setup/basis_tables.hpp"
 
 namespace compueye::recon {
 namespace {

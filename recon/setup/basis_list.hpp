@@ -4,7 +4,6 @@
 #include <string_view>
 
 #include "recon/core/bases/basis.hpp"
-#include "recon/core/frame/metric.hpp"
 #include "recon/setup/kept_tables.hpp"
 
 namespace compueye::recon {

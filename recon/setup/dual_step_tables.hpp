@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "recon/core/parts/deflated_step.hpp"
-#include "recon/setup/parity_classes.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
 
 namespace compueye::recon {
 

@@ -7,10 +7,10 @@
 #include <limits>
 #include <vector>
 
-#include "recon/core/parts/packed_symmetric.hpp"
+#include "recon/core/parts/class_inverse.hpp"
 #include "recon/number_text.hpp"
+#include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
-#include "recon/setup/parity_gram.hpp"
 
 namespace compueye::recon {
 namespace {

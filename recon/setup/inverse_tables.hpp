@@ -1,7 +1,7 @@
 #pragma once
 
 #include "recon/core/frame/frame_problem.hpp"
-#include "recon/setup/parity_classes.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/solver_row.hpp"
 
 namespace compueye::recon {

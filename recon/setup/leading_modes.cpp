@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
-#include "recon/setup/parity_gram.hpp"
 #include "recon/setup/symmetric_modes.hpp"
 
 namespace compueye::recon {

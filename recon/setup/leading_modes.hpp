@@ -5,7 +5,7 @@
 
 #include "hal/result.hpp"
 #include "recon/setup/factor.hpp"
-#include "recon/setup/parity_classes.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
 
 namespace compueye::recon {
 

@@ -1,15 +1,16 @@
 #include "recon/setup/operator_list.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "hal/try.hpp"
 #include "recon/setup/dense_run_tables.hpp"
-#include "recon/setup/operator_choice.hpp"
 #include "recon/setup/quantised_response.hpp"
 #include "recon/setup/running_sum_tables.hpp"
 
@@ -121,5 +122,92 @@ template hal::Result<core::LinearOperator<float>> make_operator(const Response&,
                                                                 KeptTables&);
 template hal::Result<core::LinearOperator<double>> make_operator(const Response&, std::optional<OperatorKind>,
                                                                  KeptTables&);
+
+namespace {
+
+/// What one application takes, in loads of a sparse entry: dense rows are read seven times as fast an entry, a value of
+/// dense runs somewhat less so, for a run has a beginning; a tap of a running sum, or of several at once, takes about
+/// as long as a sparse entry, and folding and summing a picture about as long as 1.3 of them a pixel.
+constexpr double dense_entry_cost = 0.15;
+constexpr double run_value_cost = 0.2;
+constexpr double fold_cost = 1.3;
+
+hal::Result<OperatorChoice> refused(std::string why) {
+  return hal::fail(hal::ErrorCode::unsupported, "operator", std::move(why));
+}
+
+/// Eight rows at once halve the taps of four and fold the picture twice.
+OperatorChoice running_sums_of(const Response& seeing, double taps) {
+  OperatorChoice choice{OperatorKind::running_sums, find_mirror_symmetry(seeing), {}};
+  if (rows_sharing_tables(seeing.image_rows(), seeing.image_cols(), choice.images, {}) == 1) return choice;
+  choice.kind = OperatorKind::running_sums_symmetric;
+  if (taps / 8.0 < fold_cost * static_cast<double>(seeing.cols())) return choice;
+  choice.transposed = find_diagonal_symmetry(seeing);
+  if (rows_sharing_tables(seeing.image_rows(), seeing.image_cols(), choice.images, choice.transposed) == 8) {
+    choice.kind = OperatorKind::running_sums_diagonal;
+  }
+  return choice;
+}
+
+hal::Result<OperatorChoice> as_asked(const Response& seeing, OperatorKind kind) {
+  constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();  // row starts are 32 bits wide
+  const std::int64_t entries = seeing.nonzeros();
+  switch (kind) {
+    case OperatorKind::dense:
+      return OperatorChoice{kind, {}, {}};
+    case OperatorKind::csr:
+      if (entries > most) {
+        return refused("csr numbers at most " + std::to_string(most) + " entries, the response has " +
+                       std::to_string(entries) + "; expected dense-runs");
+      }
+      return OperatorChoice{kind, {}, {}};
+    case OperatorKind::running_sums:
+    case OperatorKind::running_sums_symmetric:
+    case OperatorKind::running_sums_diagonal: {
+      if (!running_sums_fit(seeing.image_rows(), seeing.image_cols())) {
+        return refused(
+            "running sums number at most 65536 pixels in a quarter of the picture; expected dense-runs or csr");
+      }
+      const std::int64_t taps = running_sum_taps(seeing);
+      if (taps >= entries) {
+        return refused("running sums of this response have " + std::to_string(taps) + " differences for " +
+                       std::to_string(entries) +
+                       " entries, for its rows are not flat; expected dense-runs, csr or dense");
+      }
+      return running_sums_of(seeing, static_cast<double>(taps));
+    }
+    case OperatorKind::dense_runs:
+    case OperatorKind::dense_runs_bf16:
+    case OperatorKind::dense_runs_int8:
+      if (seeing.cols() < least_run_pixels) {
+        return refused("a run has at least " + std::to_string(least_run_pixels) + " pixels, the picture has " +
+                       std::to_string(seeing.cols()) + "; expected dense or csr");
+      }
+      return OperatorChoice{kind, {}, {}};
+  }
+  return refused("is none that exists");
+}
+
+}  // namespace
+
+hal::Result<OperatorChoice> choose_operator(const Response& seeing, std::optional<OperatorKind> asked) {
+  if (asked) return as_asked(seeing, *asked);
+  const auto sparse = static_cast<double>(seeing.nonzeros()), pixels = static_cast<double>(seeing.cols());
+  const double dense = dense_entry_cost * static_cast<double>(seeing.rows()) * pixels;
+  double least = std::min(dense, sparse);
+  OperatorKind plain = dense < sparse ? OperatorKind::dense : OperatorKind::csr;
+  const double runs = run_value_cost * static_cast<double>(dense_run_values(seeing));
+  if (runs < least) {
+    least = runs;
+    plain = OperatorKind::dense_runs;
+  }
+  if (!running_sums_fit(seeing.image_rows(), seeing.image_cols())) return as_asked(seeing, plain);
+  const auto taps = static_cast<double>(running_sum_taps(seeing));
+  if (taps / 4.0 + pixels < least) {
+    OperatorChoice sums = running_sums_of(seeing, taps);
+    if (sums.kind != OperatorKind::running_sums || taps + pixels < least) return sums;
+  }
+  return as_asked(seeing, plain);
+}
 
 }  // namespace compueye::recon

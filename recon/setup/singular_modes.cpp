@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "recon/number_text.hpp"
+#include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
-#include "recon/setup/parity_gram.hpp"
 #include "recon/setup/symmetric_modes.hpp"
 
 namespace compueye::recon {

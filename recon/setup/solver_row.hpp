@@ -8,12 +8,12 @@
 
 #include "hal/result.hpp"
 #include "hal/try.hpp"
+#include "recon/core/frame/frame_problem.hpp"
 #include "recon/core/frame/frozen_frame.hpp"
-#include "recon/core/frame/solver.hpp"
 #include "recon/plan.hpp"
 #include "recon/setup/factor.hpp"
 #include "recon/setup/kept_tables.hpp"
-#include "recon/setup/penalty_schedule.hpp"
+#include "recon/setup/penalty_rule.hpp"
 
 namespace compueye::recon {
 

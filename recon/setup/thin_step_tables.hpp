@@ -6,7 +6,7 @@
 
 #include "recon/core/parts/thin_step.hpp"
 #include "recon/response.hpp"
-#include "recon/setup/parity_classes.hpp"
+#include "recon/setup/mirror_symmetry.hpp"
 
 namespace compueye::recon {
 

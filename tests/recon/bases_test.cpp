@@ -6,12 +6,9 @@
 
 #include "recon/core/bases/basis.hpp"
 #include "recon/core/bases/wavelet.hpp"
-#include "recon/core/frame/metric.hpp"
-#include "recon/reference/reference_solver.hpp"
-#include "recon/setup/dct_tables.hpp"
-#include "recon/setup/fourier_tables.hpp"
-#include "recon/setup/smoothing.hpp"
+#include "recon/setup/basis_tables.hpp"
 #include "tests/recon/random_problem.hpp"
+#include "tests/recon/reference/reference_solver.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;

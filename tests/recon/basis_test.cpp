@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "recon/core/bases/dct.hpp"
-#include "recon/reference/reference_solver.hpp"
-#include "recon/setup/dct_tables.hpp"
+#include "recon/setup/basis_tables.hpp"
 #include "tests/recon/random_problem.hpp"
+#include "tests/recon/reference/reference_solver.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;

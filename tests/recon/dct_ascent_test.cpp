@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "recon/core/bases/dct.hpp"
-#include "recon/setup/dct_tables.hpp"
+#include "recon/setup/basis_tables.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;

@@ -6,10 +6,9 @@
 #include <cmath>
 
 #include "recon/core/parts/cholesky.hpp"
-#include "recon/core/parts/packed_symmetric.hpp"
+#include "recon/core/parts/class_inverse.hpp"
 #include "recon/setup/inverse_tables.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
-#include "recon/setup/parity_classes.hpp"
 #include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/random_problem.hpp"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "recon/reference/reference_solver.hpp"
 #include "recon/solver_list.hpp"
 #include "tests/recon/random_problem.hpp"
+#include "tests/recon/reference/reference_solver.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recon/reference/dense_algebra.hpp"
-#include "recon/reference/reference_solver.hpp"
 #include "recon/solver_list.hpp"
+#include "tests/recon/reference/dense_algebra.hpp"
+#include "tests/recon/reference/reference_solver.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"

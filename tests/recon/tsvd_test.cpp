@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "recon/reference/dense_algebra.hpp"
 #include "recon/setup/singular_modes.hpp"
 #include "recon/solver_list.hpp"
 #include "tests/recon/dense_matrix.hpp"
+#include "tests/recon/reference/dense_algebra.hpp"
 #include "tests/recon/relative_difference.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"

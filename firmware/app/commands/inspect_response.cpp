@@ -20,7 +20,6 @@
 #include "recon/reconstructor.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/operator_list.hpp"
-#include "recon/setup/parity_classes.hpp"
 #include "recon/setup/penalty_rule.hpp"
 
 namespace compueye::firmware {

@@ -1,7 +1,6 @@
 #include "recon/core/bases/dct.hpp"
 
 #include "recon/core/bases/strip.hpp"
-#include "recon/core/bases/strip_product.hpp"
 #include "recon/core/parts/multiversion.hpp"
 
 namespace compueye::recon::core {

@@ -3,12 +3,12 @@
 #include <cstddef>
 
 #include "recon/core/parts/crew.hpp"
-#include "recon/core/parts/relaxed_steps.hpp"
+#include "recon/core/parts/proximal.hpp"
 
 namespace compueye::recon::core {
 
 /// Orthonormal DCT-II of one length, any length, as tables that somebody else owns (made by
-/// recon/setup/dct_tables.hpp).
+/// recon/setup/basis_tables.hpp).
 ///
 /// While the length is even it is split: sums of mirrored samples give the even coefficients by a DCT-II of half the
 /// length, their differences give the odd ones by a DCT-IV of half the length (Chen, Smith & Fralick 1977, eq. 6-9).

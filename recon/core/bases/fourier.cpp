@@ -1,7 +1,6 @@
 #include "recon/core/bases/fourier.hpp"
 
 #include "recon/core/bases/strip.hpp"
-#include "recon/core/bases/strip_product.hpp"
 
 namespace compueye::recon::core {
 namespace {

@@ -6,7 +6,7 @@ namespace compueye::recon::core {
 
 /// The discrete Fourier transform in real form: the orthonormal basis 1, cos, sin, ..., (-1)^r of each length, one
 /// after the other by frequency, as a tensor product over rows and columns. Tables (length x length, row-major by
-/// coefficient) are made by recon/setup/fourier_tables.hpp and owned by somebody else.
+/// coefficient) are made by recon/setup/basis_tables.hpp and owned by somebody else.
 template <class T>
 struct Fourier2d {
   std::size_t rows = 0;

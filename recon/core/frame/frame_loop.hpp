@@ -4,7 +4,6 @@
 
 #include "recon/core/frame/frame_outcome.hpp"
 #include "recon/core/frame/frame_problem.hpp"
-#include "recon/core/frame/solver.hpp"
 #include "recon/core/parts/workspace.hpp"
 
 namespace compueye::recon::core {

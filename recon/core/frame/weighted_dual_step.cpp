@@ -1,7 +1,6 @@
 #include "recon/core/frame/weighted_dual_step.hpp"
 
 #include "recon/core/parts/proximal.hpp"
-#include "recon/core/parts/relaxed_steps.hpp"
 #include "recon/core/parts/vector_sums.hpp"
 
 namespace compueye::recon::core {

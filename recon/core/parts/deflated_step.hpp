@@ -12,7 +12,7 @@ namespace compueye::recon::core {
 ///   F = f_0 I + U diag(f_k - f_0) U',   f_k = 1 / (1 + tau s_k / (1 - w))
 ///
 /// U are eigenvectors of A A' and s_k their eigenvalues; s_0 bounds those of all other modes. By parity classes
-/// (recon/setup/parity_classes.hpp) where A is mirror symmetric, which is a quarter of the work; else one class.
+/// (recon/setup/mirror_symmetry.hpp) where A is mirror symmetric, which is a quarter of the work; else one class.
 /// Vectors are bfloat16, the upper half of a float32: steps, not results, depend on them. What rounding takes off a
 /// mode far above the rest would pass through f_0 and be too long a step for it; such modes come first and have a
 /// second column each, with what the first one lost.

@@ -2,8 +2,8 @@
 
 #include "recon/core/frame/duality_gap.hpp"
 #include "recon/core/frame/frame_loop.hpp"
+#include "recon/core/frame/frame_outcome.hpp"
 #include "recon/core/frame/residual_copy.hpp"
-#include "recon/core/frame/split_residuals.hpp"
 #include "recon/core/frame/weighted_step.hpp"
 #include "recon/core/parts/proximal.hpp"
 #include "recon/core/parts/square_root.hpp"

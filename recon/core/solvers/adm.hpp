@@ -3,7 +3,6 @@
 #include <string_view>
 
 #include "recon/core/frame/frame_problem.hpp"
-#include "recon/core/frame/solver.hpp"
 
 namespace compueye::recon::core {
 

@@ -2,7 +2,7 @@
 
 #include "recon/core/frame/duality_gap.hpp"
 #include "recon/core/frame/frame_loop.hpp"
-#include "recon/core/frame/split_residuals.hpp"
+#include "recon/core/frame/frame_outcome.hpp"
 #include "recon/core/frame/weighted_step.hpp"
 #include "recon/core/parts/proximal.hpp"
 #include "recon/core/parts/vector_sums.hpp"

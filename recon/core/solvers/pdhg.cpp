@@ -5,7 +5,6 @@
 #include "recon/core/frame/warm_start.hpp"
 #include "recon/core/frame/weighted_dual_step.hpp"
 #include "recon/core/parts/proximal.hpp"
-#include "recon/core/parts/relaxed_steps.hpp"
 #include "recon/core/parts/square_root.hpp"
 #include "recon/core/parts/vector_sums.hpp"
 

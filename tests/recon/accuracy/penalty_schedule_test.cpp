@@ -1,4 +1,4 @@
-#include "recon/setup/penalty_schedule.hpp"
+#include "recon/setup/penalty_rule.hpp"
 
 #include <doctest/doctest.h>
 

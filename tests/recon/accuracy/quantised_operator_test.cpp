@@ -4,9 +4,9 @@
 #include <string>
 
 #include "recon/option_names.hpp"
-#include "recon/reference/reference_solver.hpp"
 #include "recon/setup/quantised_response.hpp"
 #include "recon/solver_list.hpp"
+#include "tests/recon/reference/reference_solver.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"
 

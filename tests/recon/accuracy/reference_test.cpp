@@ -1,4 +1,4 @@
-#include "recon/reference/reference_solver.hpp"
+#include "tests/recon/reference/reference_solver.hpp"
 
 #include <doctest/doctest.h>
 

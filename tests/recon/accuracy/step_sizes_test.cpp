@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "recon/reference/dense_algebra.hpp"
 #include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/random_problem.hpp"
+#include "tests/recon/reference/dense_algebra.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;

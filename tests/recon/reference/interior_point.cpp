@@ -1,4 +1,4 @@
-#include "recon/reference/interior_point.hpp"
+#include "tests/recon/reference/interior_point.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

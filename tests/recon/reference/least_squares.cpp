@@ -1,6 +1,6 @@
 #include <Eigen/QR>
 
-#include "recon/reference/dense_algebra.hpp"
+#include "tests/recon/reference/dense_algebra.hpp"
 
 namespace compueye::recon::reference {
 

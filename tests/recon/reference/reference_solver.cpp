@@ -1,10 +1,10 @@
-#include "recon/reference/reference_solver.hpp"
+#include "tests/recon/reference/reference_solver.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "recon/reference/dense_algebra.hpp"
-#include "recon/reference/interior_point.hpp"
+#include "tests/recon/reference/dense_algebra.hpp"
+#include "tests/recon/reference/interior_point.hpp"
 
 namespace compueye::recon::reference {
 namespace {
