@@ -1,9 +1,12 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <regex>
+#include <string>
 
 #include "firmware/files/npy.hpp"
 #include "firmware/files/png.hpp"
+#include "recon/option_names.hpp"
 #include "sim/built_in_scenes.hpp"
 #include "tests/firmware/cli/program.hpp"
 #include "tests/firmware/cli/scratch_problem.hpp"
@@ -264,6 +267,21 @@ TEST_CASE("reconstruct --help states what goes with what and an example") {
     CAPTURE(part);
     CHECK(help.out.find(part) != std::string::npos);
   }
+}
+
+TEST_CASE("reconstruct --help names every solver, basis and form of A that there is") {
+  const TemporaryFolder folder;
+  const std::string help = run_compueye("reconstruct --help", folder.path()).out;
+  const auto names = [&](std::string_view word) {
+    CAPTURE(word);
+    CHECK(std::regex_search(help, std::regex("[ ,]" + std::string(word) + "[ ,;)]")));
+  };
+  for (const auto& solver : recon::solver_names()) {
+    names(solver.name);
+    CHECK(help.find("\n  " + std::string(solver.name) + " ") != std::string::npos);  // what goes with what
+  }
+  for (const auto& basis : recon::basis_names()) names(basis.name);
+  for (const auto& op : recon::operator_names()) names(op.name);
 }
 
 TEST_CASE("lambda from the samples is one of the rule's multiples, and says so") {
