@@ -3,7 +3,7 @@
 #include <memory>
 #include <span>
 
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::bench {
 

@@ -19,7 +19,7 @@
 #include "recon/lambda_rule.hpp"
 #include "recon/reconstructor.hpp"
 #include "recon/solver_list.hpp"
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "sim/random.hpp"
 
 using namespace compueye;

@@ -5,8 +5,8 @@
 #include "calib/pixel_coverage.hpp"
 #include "hal/eye_geometry.hpp"
 #include "hal/result.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/reconstructor.hpp"
-#include "recon/response.hpp"
 
 namespace compueye::calib {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::calib {
 

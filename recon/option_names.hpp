@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "recon/plan.hpp"
+#include "recon/problem/plan.hpp"
 
 namespace compueye::recon {
 

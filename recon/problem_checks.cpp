@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "recon/number_text.hpp"
 #include "recon/option_names.hpp"
+#include "recon/problem/number_text.hpp"
 #include "recon/solver_list.hpp"
 #include "recon/worker_threads.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "hal/result.hpp"
-#include "recon/plan.hpp"
+#include "recon/problem/plan.hpp"
 
 namespace compueye::recon {
 

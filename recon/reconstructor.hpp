@@ -8,8 +8,8 @@
 
 #include "hal/result.hpp"
 #include "recon/core/frame/frozen_frame.hpp"
-#include "recon/plan.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/plan.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/setup/factor.hpp"
 
 namespace compueye::recon {

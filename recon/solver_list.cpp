@@ -7,12 +7,10 @@ namespace compueye::recon {
 
 // Each is defined by its file in recon/setup/solvers.
 extern const SolverRow admm, adm, chambolle_pock, fista, omp, pdhg, tikhonov, tsvd;
-extern const SolverRow adm_as_published;
 
 namespace {
 
 constexpr std::array<SolverKind, 8> to_choose{&admm, &adm, &chambolle_pock, &fista, &omp, &pdhg, &tikhonov, &tsvd};
-constexpr std::array<SolverKind, 1> for_show{&adm_as_published};
 
 }  // namespace
 
@@ -25,10 +23,9 @@ SolverKind default_solver() noexcept {
 }
 
 SolverKind solver_named(std::string_view name) noexcept {
-  for (const auto& list : {solvers(), std::span<const SolverKind>(for_show)}) {
-    for (const SolverKind solver : list) {
-      if (solver->name == name) return solver;
-    }
+  for (const SolverKind solver : to_choose) {
+    if (solver->name == name) return solver;
+    if (solver->published != nullptr && solver->published->name == name) return solver->published;
   }
   return nullptr;
 }

@@ -10,7 +10,7 @@
 #include "recon/aligned_workspace.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/solver_list.hpp"
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "sim/random.hpp"
 
 namespace compueye::bench {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bench/eyes.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/reconstructor.hpp"
-#include "recon/response.hpp"
 
 namespace compueye::bench {
 

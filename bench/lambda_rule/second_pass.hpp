@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bench/lambda_rule/cases.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::bench {
 

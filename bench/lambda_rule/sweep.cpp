@@ -11,8 +11,8 @@
 #include "recon/lambda_rule.hpp"
 #include "recon/metrics.hpp"
 #include "recon/solver_list.hpp"
-#include "sim/built_in_scenes.hpp"
 #include "sim/optics.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "sim/random.hpp"
 
 namespace compueye::bench {

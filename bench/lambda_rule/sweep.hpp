@@ -7,7 +7,7 @@
 
 #include "bench/lambda_rule/cases.hpp"
 #include "hal/image.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::bench {
 

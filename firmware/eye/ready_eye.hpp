@@ -10,8 +10,8 @@
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/reconstructor_maker.hpp"
 #include "hal/result.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/reconstructor.hpp"
-#include "recon/response.hpp"
 #include "recon/setup/factor.hpp"
 
 namespace compueye::firmware {

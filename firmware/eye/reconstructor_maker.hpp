@@ -9,8 +9,8 @@
 
 #include "firmware/files/factor_cache.hpp"
 #include "hal/result.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/reconstructor.hpp"
-#include "recon/response.hpp"
 
 namespace compueye::firmware {
 

@@ -7,7 +7,7 @@
 
 #include "firmware/files/png.hpp"
 #include "hal/try.hpp"
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "hal/result.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/reconstructor.hpp"
-#include "recon/response.hpp"
 
 namespace compueye::firmware {
 

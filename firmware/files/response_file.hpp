@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "hal/result.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::firmware {
 

@@ -6,7 +6,7 @@
 #include "firmware/operating_points/measured_points.hpp"
 #include "firmware/text/figures.hpp"
 #include "hal/result.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::firmware {
 

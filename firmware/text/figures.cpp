@@ -83,13 +83,17 @@ std::string in_form(const Value& value, std::string_view form) {
   return decimals ? fixed(number, digits) : significant(number, digits);
 }
 
-/// What `path` leads to from the value on.
+/// What `path` leads to from the value on: nothing from nothing, and from a list beyond its end; null where no such key
+/// can be.
 const Value* at(const Value& value, std::string_view path) {
+  static const Value nothing;
+  if (std::holds_alternative<std::monostate>(value.data())) return &nothing;
   if (const auto* inner = std::get_if<Inner>(&value.data())) return (*inner)->find(path);
   const auto* list = std::get_if<Value::List>(&value.data());
   std::size_t index = 0;
   const auto number = std::from_chars(path.data(), path.data() + path.size(), index);
-  if (list == nullptr || number.ec != std::errc{} || index >= list->size()) return nullptr;
+  if (list == nullptr || number.ec != std::errc{}) return nullptr;
+  if (index >= list->size()) return &nothing;
   const std::size_t dot = path.find('.');
   return dot == std::string_view::npos ? &(*list)[index] : at((*list)[index], path.substr(dot + 1));
 }
@@ -181,7 +185,7 @@ const Value* Figures::find(std::string_view path) const {
   return dot == std::string_view::npos ? &member->second : at(member->second, path.substr(dot + 1));
 }
 
-std::string Figures::sentence(std::string_view sentence, std::string_view missing) const {
+std::string Figures::sentence(std::string_view sentence, std::string_view missing, bool may_lack) const {
   std::string text;
   std::size_t part = 0;  // where the part in brackets begins
   bool says_something = false;
@@ -202,7 +206,11 @@ std::string Figures::sentence(std::string_view sentence, std::string_view missin
       const Value* value = find(name.substr(0, colon));
       const bool there = value != nullptr && !std::holds_alternative<std::monostate>(value->data());
       says_something = says_something || (there && !value->says_nothing());
-      text += there ? in_form(*value, name.substr(std::min(colon + 1, name.size()))) : missing;
+      if (value == nullptr && !may_lack) {
+        text += sentence.substr(at, name.size() + 2);
+      } else {
+        text += there ? in_form(*value, name.substr(std::min(colon + 1, name.size()))) : missing;
+      }
       at += name.size() + 1;
     } else {
       text += c;
@@ -245,7 +253,7 @@ std::string table_of(const Value::List& rows, const std::vector<FigureColumn>& c
     std::vector<std::string> cells;
     const auto* figures = std::get_if<Inner>(&row.data());
     for (const FigureColumn& column : columns) {
-      if (figures != nullptr) cells.push_back((*figures)->sentence(column.cell, missing));
+      if (figures != nullptr) cells.push_back((*figures)->sentence(column.cell, missing, true));
     }
     table.add(std::move(cells));
   }

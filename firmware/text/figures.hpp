@@ -69,7 +69,8 @@ class Value {
 ///
 /// Without a form: words made visible, figures in it that say something as "2 superseded, 1 corrupt", members of a list
 /// likewise set apart by commas. A part in [brackets] is left out when every figure in it says nothing; [[, ]], {{ and
-/// }} are single ones. `{}` is the last figure so far. A figure that is null, or that is not there, is "n/a".
+/// }} are single ones. `{}` is the last figure so far. A figure that is null is "n/a"; a key that nothing has is a slip
+/// of the pen and stays in the text as it was written, in its braces, for tests to find.
 class Figures {
  public:
   struct Member {
@@ -90,7 +91,9 @@ class Figures {
   /// What no figure says, for people, as it stands.
   Figures& say(std::string_view text);
 
-  [[nodiscard]] std::string sentence(std::string_view sentence, std::string_view missing = "n/a") const;
+  /// `missing` stands for a figure that is null and, with `may_lack`, for one that is not there.
+  [[nodiscard]] std::string sentence(std::string_view sentence, std::string_view missing = "n/a",
+                                     bool may_lack = false) const;
   /// What was told, then the table of lines.
   [[nodiscard]] std::string text() const;
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "recon/core/operators/dense_runs.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::recon {
 

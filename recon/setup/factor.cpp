@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "recon/core/parts/class_inverse.hpp"
-#include "recon/number_text.hpp"
+#include "recon/problem/number_text.hpp"
 #include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "hal/result.hpp"
 #include "recon/core/bases/basis.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::recon {
 

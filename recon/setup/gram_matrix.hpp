@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "recon/core/bases/basis.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/setup/factor.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/running_sum_tables.hpp"

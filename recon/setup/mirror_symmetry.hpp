@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::recon {
 

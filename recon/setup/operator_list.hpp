@@ -9,7 +9,7 @@
 
 #include "hal/result.hpp"
 #include "recon/core/operators/linear_operator.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/setup/kept_tables.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "recon/plan.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/plan.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::recon {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "recon/core/operators/linear_operator.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::recon {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "recon/core/operators/running_sums.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 
 namespace compueye::recon {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "recon/number_text.hpp"
+#include "recon/problem/number_text.hpp"
 #include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
 #include "recon/setup/symmetric_modes.hpp"

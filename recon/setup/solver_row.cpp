@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "recon/number_text.hpp"
+#include "recon/problem/number_text.hpp"
 #include "recon/setup/basis_list.hpp"
 #include "recon/setup/operator_list.hpp"
 

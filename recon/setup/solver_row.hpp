@@ -10,7 +10,7 @@
 #include "hal/try.hpp"
 #include "recon/core/frame/frame_problem.hpp"
 #include "recon/core/frame/frozen_frame.hpp"
-#include "recon/plan.hpp"
+#include "recon/problem/plan.hpp"
 #include "recon/setup/factor.hpp"
 #include "recon/setup/kept_tables.hpp"
 #include "recon/setup/penalty_rule.hpp"
@@ -90,11 +90,13 @@ struct SolverRow {
   RhoUse rho = RhoUse::none;
   RankUse rank = RankUse::none;
   LambdaUse lambda = LambdaUse::penalty;
-  bool minimises = true;  ///< the objective of recon/plan.hpp, so that its value can be compared with that of others
+  bool minimises =
+      true;  ///< the objective of recon/problem/plan.hpp, so that its value can be compared with that of others
   bool takes_epsilon = false;
-  bool relaxes = false;    ///< Plan::relaxation
-  bool reweights = false;  ///< Plan::l1_reweighting, in pixels
-  bool direct = false;     ///< no iterations
+  bool relaxes = false;            ///< Plan::relaxation
+  bool reweights = false;          ///< Plan::l1_reweighting, in pixels
+  bool direct = false;             ///< no iterations
+  SolverKind published = nullptr;  ///< the method as its authors published it, where it is kept to be shown beside this
 
   /// The pairs that it takes. A solver that has one proximal map for the l1 term and the constraint together can only
   /// take pairs whose joint map is known; composing two maps looks right and is not the map of their sum.

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "recon/core/bases/basis.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::recon {
 

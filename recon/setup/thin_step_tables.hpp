@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "recon/core/parts/thin_step.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 
 namespace compueye::recon {

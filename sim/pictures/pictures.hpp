@@ -5,8 +5,9 @@
 #include "hal/image.hpp"
 #include "hal/result.hpp"
 
-// The generators behind sim/built_in_scenes.hpp. Each takes rows and cols of at least 1 and gives linear intensities
-// 0..1; the same seed gives the same bits on every platform, so they use basic arithmetic and square roots only.
+// The generators behind sim/pictures/built_in_scenes.hpp. Each takes rows and cols of at least 1 and gives linear
+// intensities 0..1; the same seed gives the same bits on every platform, so they use basic arithmetic and square roots
+// only.
 namespace compueye::sim::pictures {
 
 [[nodiscard]] hal::Image line_art(int rows, int cols, std::uint64_t seed);

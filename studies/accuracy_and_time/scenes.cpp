@@ -12,8 +12,8 @@
 #include "hal/sample_block.hpp"
 #include "hal/sample_source.hpp"
 #include "hal/try.hpp"
-#include "sim/built_in_scenes.hpp"
 #include "sim/optics.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "sim/scene_truth.hpp"
 
 namespace compueye::firmware {

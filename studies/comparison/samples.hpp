@@ -6,7 +6,7 @@
 #include "firmware/eye/board.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/setup/factor.hpp"
 #include "studies/comparison/comparison.hpp"
 

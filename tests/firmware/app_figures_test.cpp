@@ -53,14 +53,20 @@ TEST_CASE("a figure has the form that its sentence asks for") {
         "on off any 1 0.1");
 }
 
-TEST_CASE("what is not there is told so, and a part that says nothing is left out") {
+TEST_CASE("what is null is told so, and a part that says nothing is left out") {
   const Figures f = some();
-  CHECK(f.sentence("{none} {none:3} {nowhere} {file.inner} {last.quality.none} {unknown:3}") ==
-        "n/a n/a n/a n/a n/a n/a");
-  CHECK(f.sentence("{none} {nowhere:bytes}", "-") == "- -");
+  CHECK(f.sentence("{none} {none:3} {none.inner} {scenes.9}") == "n/a n/a n/a n/a");
+  CHECK(f.sentence("{none} {none:bytes}", "-") == "- -");
   CHECK(f.sentence("a[ {dropped.corrupt} corrupt][, {dropped.stopped} stopped][ ({nothing})][{serial}{none}]z") ==
         "a, 1 stoppedz");
   CHECK(f.sentence("[{dropped.corrupt} of {frames}]") == "0 of 1");
+}
+
+TEST_CASE("a key that nothing has stays as it was written, but where a row may lack it") {
+  const Figures f = some();
+  const std::string_view slips = "{nowhere} {file.inner} {last.quality.none} {lines.one:3}";
+  CHECK(f.sentence(slips) == slips);
+  CHECK(f.sentence(slips, "-", true) == "- - - -");
 }
 
 TEST_CASE("text is what was told, in order, and then the lines") {

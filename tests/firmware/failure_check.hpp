@@ -6,6 +6,15 @@
 
 namespace compueye::test {
 
+/// Of all that a program says: a key that is left in braces names a figure that nothing has
+/// (firmware/text/figures.hpp).
+inline void check_no_key_left(const std::string& said) {
+  const auto letter = [&](std::size_t at) { return at < said.size() && said[at] >= 'a' && said[at] <= 'z'; };
+  std::size_t at = said.find('{');
+  while (at != std::string::npos && !letter(at + 1)) at = said.find('{', at + 1);
+  CHECK_MESSAGE(at == std::string::npos, said);
+}
+
 /// What a program that failed leaves: the exit code of `code`, and on stderr one line, "compueye: PLACE: SENTENCE".
 /// With an empty `place` the values may be named anywhere in it. Returns "PLACE: SENTENCE". `Ended` is what a Program
 /// gives.

@@ -9,7 +9,7 @@
 #include "calib/nominal.hpp"
 #include "calib/plausible_response.hpp"
 #include "recon/lambda_rule.hpp"
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "sim/random.hpp"
 #include "tests/recon/solve_frame.hpp"
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "sim/simulated_eye.hpp"
 #include "tests/hal/sample_source_contract.hpp"
 #include "tests/memory/allocation_counter.hpp"

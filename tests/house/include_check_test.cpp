@@ -68,10 +68,11 @@ TEST_CASE("the include check catches exactly the marked lines of the fixtures") 
 }
 
 TEST_CASE("a forbidden include is reported with file, line, include and rule") {
-  const auto violations = check_includes("sim/eye.cpp", "\n#include \"recon/response.hpp\"\n");
+  const auto violations = check_includes("sim/eye.cpp", "\n#include \"recon/problem/response.hpp\"\n");
   REQUIRE(violations.size() == 1);
   CHECK(violations[0].text() ==
-        "sim/eye.cpp:2: include of 'recon/response.hpp' is not open to sim; rule: sim: hal and drivers/protocol, never "
+        "sim/eye.cpp:2: include of 'recon/problem/response.hpp' is not open to sim; rule: sim: hal and "
+        "drivers/protocol, never "
         "recon or calib (it must not share a forward model with them)");
 }
 

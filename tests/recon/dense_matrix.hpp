@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::tests {
 

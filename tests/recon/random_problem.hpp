@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::tests {
 

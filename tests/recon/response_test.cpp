@@ -1,4 +1,4 @@
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 
 #include <doctest/doctest.h>
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 
 using namespace compueye;
 using hal::Lattice;

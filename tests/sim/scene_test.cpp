@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "sim/scene_truth.hpp"
 
 using namespace compueye;

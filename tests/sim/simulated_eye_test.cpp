@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
 using namespace compueye;

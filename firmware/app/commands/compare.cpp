@@ -76,12 +76,15 @@ void tell_head(const Comparison& c, Figures& f) {
 }
 
 void tell_foot(const Comparison& c, Figures& f) {
+  const auto named = [](bool (*wanted)(const recon::SolverRow&)) { return recon::names_of_solvers(wanted, " and "); };
   f.say(
-      "\n* least NMSE. Solvers of one basis and constraint minimise the same objective: 'over least' says how far each "
-      "is\n"
-      "above the least among them, the duality gap how far at most above the optimum (that of admm and adm closes\n"
-      "late), NMSE, PSNR and SSIM how good the picture is. omp, tikhonov and tsvd have objectives of their own.\n"
-      "ms: median of one frame on ");
+       "\n* least NMSE. Solvers of one basis and constraint minimise the same objective: 'over least' says how far "
+       "each "
+       "is\nabove the least among them, the duality gap how far at most above the optimum (that of ")
+      .say(named([](const recon::SolverRow& row) { return row.rho == recon::RhoUse::penalty; }))
+      .say(" closes\nlate), NMSE, PSNR and SSIM how good the picture is. ")
+      .say(named([](const recon::SolverRow& row) { return !row.minimises; }))
+      .say(" have objectives of their own.\nms: median of one frame on ");
   f.tell(c.threads == 1 ? "one thread" : "{threads} threads").say(", duality gap included.\n");
   const bool pixels = std::any_of(c.rows.begin(), c.rows.end(), [](const ComparedRow& row) {
     return row.contender.basis == recon::BasisKind::identity && row.excess;

@@ -7,7 +7,7 @@
 #include "firmware/text/figures.hpp"
 #include "hal/result.hpp"
 #include "recon/core/frame/frame_info.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/setup/factor.hpp"
 
 namespace compueye::firmware {

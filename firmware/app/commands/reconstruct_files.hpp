@@ -13,7 +13,7 @@
 #include "firmware/files/atomic_file.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 
 namespace compueye::firmware {
 

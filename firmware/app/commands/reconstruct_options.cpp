@@ -94,11 +94,6 @@ bool has_rank(const recon::SolverRow& row) {
   return row.rank == recon::RankUse::singular_values;
 }
 
-/// The method as its authors published it, where that is kept for comparison.
-recon::SolverKind published_of(const recon::SolverRow& row) {
-  return recon::solver_named(std::string(row.name) + " as published");
-}
-
 hal::Result<void> check_direct(const Overrides& given, const Board& board) {
   const recon::SolverRow& solver = *board.plan.solver;
   if (!solver.direct) return {};
@@ -169,7 +164,7 @@ hal::Result<void> check_solver_options(const ReconstructOptions& o, const Board&
   TRY(o.settings.check_solver(solver));
   if (o.as_published) {
     TRY(need_solver(
-        solver, [](const recon::SolverRow& row) { return published_of(row) != nullptr; }, "--as-published",
+        solver, [](const recon::SolverRow& row) { return row.published != nullptr; }, "--as-published",
         "what YALL1 does"));
   }
   TRY(need(!o.settings.has("--reweight") || board.objective.basis == recon::BasisKind::identity, "--reweight",
@@ -218,7 +213,7 @@ hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
   TRY(check_ending("--png", o.png, ".png", false));
   TRY(check_not_input("--out", o.out, o));
   if (o.nonnegative) board.objective.constraint = recon::ConstraintKind::nonnegative;
-  if (o.as_published) board.plan.solver = published_of(*board.plan.solver);
+  if (o.as_published) board.plan.solver = board.plan.solver->published;
   board.plan.measure_gap = true;
   TRY(check_pair(board));
   return problem;

@@ -3,7 +3,7 @@
 
 #include "firmware/eye/settings/field.hpp"
 #include "firmware/eye/settings/setting.hpp"
-#include "recon/setup/solver_row.hpp"
+#include "recon/solver_list.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::firmware {
@@ -97,9 +97,15 @@ void add_weight(std::vector<Setting>& all) {
            .shown([](const Board& b) { return b.plan.rho > 0.0 ? value_of(b.plan.rho) : std::nullopt; })});
 }
 
+std::string_view relaxation_meaning() {
+  static const std::string meaning =
+      "over-relaxation of " + recon::names_of_solvers([](const SolverRow& row) { return row.relaxes; }, " and ");
+  return meaning;
+}
+
 void add_way(std::vector<Setting>& all) {
   add(all, section,
-      {field<&Board::plan, &Plan::relaxation>("relaxation", "over-relaxation of admm, cp and pdhg")
+      {field<&Board::plan, &Plan::relaxation>("relaxation", relaxation_meaning())
            .within({0, 2, true, true})
            .otherwise(V{1.7})
            .option_of("reconstruct", "--relaxation", "V")

@@ -24,8 +24,12 @@ struct Method {
 
 }  // namespace
 
+extern const SolverRow adm_as_published;
 extern const SolverRow adm;  // for recon/solver_list.cpp
-constinit const SolverRow adm = solver_row_of<core::AdmProblem, Method>(
-    {.factor = FactorUse::inverse, .rho = RhoUse::penalty, .takes_epsilon = true, .takes = one_proximal_map});
+constinit const SolverRow adm = solver_row_of<core::AdmProblem, Method>({.factor = FactorUse::inverse,
+                                                                         .rho = RhoUse::penalty,
+                                                                         .takes_epsilon = true,
+                                                                         .published = &adm_as_published,
+                                                                         .takes = one_proximal_map});
 
 }  // namespace compueye::recon

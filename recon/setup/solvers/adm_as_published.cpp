@@ -18,7 +18,7 @@ struct Method {
 
 }  // namespace
 
-extern const SolverRow adm_as_published;  // for recon/solver_list.cpp
+extern const SolverRow adm_as_published;  // for adm.cpp
 constinit const SolverRow adm_as_published =
     solver_row_of<core::PublishedAdmProblem, Method>({.takes_epsilon = true, .takes = takes});
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "drivers/recording/recording_source.hpp"
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "sim/simulated_eye.hpp"
 
 /// A small simulated eye and recordings of it.

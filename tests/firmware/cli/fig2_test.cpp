@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "tests/firmware/cli/program.hpp"
 #include "tests/firmware/cli/scratch_problem.hpp"
 

@@ -13,6 +13,8 @@
 #include <chrono>
 #include <sstream>
 
+#include "tests/firmware/failure_check.hpp"
+
 extern char** environ;
 
 namespace compueye::test {
@@ -101,6 +103,7 @@ Outcome Program::wait() {
   int status = 0;
   ::waitpid(process_, &status, 0);
   process_ = -1;
+  check_no_key_left(outcome.out);
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return outcome;
 }

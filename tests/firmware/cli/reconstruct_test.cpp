@@ -7,7 +7,7 @@
 #include "firmware/files/npy.hpp"
 #include "firmware/files/png.hpp"
 #include "recon/option_names.hpp"
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "tests/firmware/cli/program.hpp"
 #include "tests/firmware/cli/scratch_problem.hpp"
 

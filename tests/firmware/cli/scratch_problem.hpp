@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "recon/response.hpp"
+#include "recon/problem/response.hpp"
 #include "tests/firmware/failure_check.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <thread>
 
+#include "tests/firmware/failure_check.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 
 extern char** environ;
@@ -74,6 +75,7 @@ Ended Program::wait() {
   if (WIFEXITED(status_)) ended.exit_code = WEXITSTATUS(status_);
   ended.out = bytes_of(folder_ / "out");
   ended.err = bytes_of(folder_ / "err");
+  check_no_key_left(ended.out);
   return ended;
 }
 

@@ -9,7 +9,7 @@
 #include "bench/eyes.hpp"
 #include "calib/nominal.hpp"
 #include "recon/solver_list.hpp"
-#include "sim/built_in_scenes.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
 

@@ -1,4 +1,4 @@
-#include "recon/number_text.hpp"
+#include "recon/problem/number_text.hpp"
 
 #include <array>
 #include <charconv>
