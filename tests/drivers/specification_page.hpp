@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/source_folder.hpp"
+
 /// A page of docs/ that specifies bytes, so that a test can hold the code to its tables and worked examples.
 namespace compueye::tests {
 
@@ -43,7 +45,7 @@ class Page {
  public:
   /// `name`: of a page in docs/.
   explicit Page(const std::string& name) {
-    std::ifstream file(COMPUEYE_SOURCE_DIR "/docs/" + name);
+    std::ifstream file(test::source_path("docs/" + name));
     REQUIRE(file);
     std::string line, heading, block;
     while (std::getline(file, line)) {

@@ -16,6 +16,7 @@
 #include "recon/solver_list.hpp"
 #include "tests/firmware/app_board_text.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double deg = std::numbers::pi / 180.0;
-const fs::path boards = fs::path(COMPUEYE_SOURCE_DIR) / "boards";
+const fs::path boards = compueye::test::source_path("boards");
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file);
@@ -164,7 +165,7 @@ TEST_CASE("every default in the key table is itself a good value") {
 }
 
 TEST_CASE("the reference documents every key as the loader knows it") {
-  const std::string reference = text_of(fs::path(COMPUEYE_SOURCE_DIR) / "docs" / "board-file.md");
+  const std::string reference = text_of(compueye::test::source_path("docs/board-file.md"));
   REQUIRE_FALSE(reference.empty());
   for (const Section& section : sections()) {
     CAPTURE(section.name);

@@ -10,6 +10,7 @@
 #include "tests/drivers/protocol/wire_samples.hpp"
 #include "tests/drivers/recording/film.hpp"
 #include "tests/firmware/app_board_text.hpp"
+#include "tests/source_folder.hpp"
 
 namespace compueye::fuzz {
 namespace {
@@ -95,7 +96,7 @@ std::vector<Bytes> recording_seeds() {
 std::vector<Bytes> board_file_seeds() {
   std::vector<Bytes> seeds{bytes_of_text(firmware::test::good_board)};
   std::vector<std::filesystem::path> boards;
-  for (const auto& entry : std::filesystem::directory_iterator(COMPUEYE_SOURCE_DIR "/boards")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_path("boards"))) {
     if (exists(entry.path() / "board.toml")) boards.push_back(entry.path() / "board.toml");
   }
   std::sort(boards.begin(), boards.end());

@@ -9,13 +9,14 @@
 #include "tests/house/include_rules.hpp"
 #include "tests/house/include_scanner.hpp"
 #include "tests/house/source_tree.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace compueye::house;
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path root = COMPUEYE_SOURCE_DIR;
+const fs::path root = compueye::test::source_path();
 constexpr std::string_view fixture_ending = ".fixture";
 
 /// Lines that end in a "// FORBIDDEN" remark.

@@ -5,13 +5,14 @@
 #include <filesystem>
 
 #include "tests/house/source_tree.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace compueye::house;
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path root = COMPUEYE_SOURCE_DIR;
+const fs::path root = compueye::test::source_path();
 
 template <typename Check>
 void check_every_file(Check check) {

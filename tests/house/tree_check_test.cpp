@@ -7,12 +7,13 @@
 #include <filesystem>
 
 #include "tests/house/source_tree.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace compueye::house;
 
 namespace {
 
-const std::filesystem::path root = COMPUEYE_SOURCE_DIR;
+const std::filesystem::path root = compueye::test::source_path();
 
 const std::vector<SourceFile>& product() {
   static const std::vector<SourceFile> files = [] {

@@ -6,6 +6,7 @@
 #include "recon/option_names.hpp"
 #include "recon/solver_list.hpp"
 #include "tests/firmware/temporary_folder.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace compueye;
 
@@ -42,7 +43,7 @@ std::string what_goes_with_what() {
 }  // namespace
 
 TEST_CASE("docs/solvers.md has the table of what goes with what") {
-  const std::string page = test::bytes_of(std::filesystem::path(COMPUEYE_SOURCE_DIR) / "docs" / "solvers.md");
+  const std::string page = test::bytes_of(test::source_path("docs/solvers.md"));
   const std::string wanted = what_goes_with_what();
   CHECK_MESSAGE(page.find("\n" + wanted) != std::string::npos, "docs/solvers.md must contain\n" << wanted);
 }

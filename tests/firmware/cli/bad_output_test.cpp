@@ -42,7 +42,7 @@ TEST_CASE("a full disk is told and leaves nothing") {
   CHECK(std::filesystem::is_symlink(problem.folder() / "full.mtx"));
 
   // One block of 512 bytes a file, for a response of 58 kB.
-  const std::string command = std::string(COMPUEYE_PROGRAM) + " " + response + "--out A.mtx";
+  const std::string command = compueye_command("").front() + " " + response + "--out A.mtx";
   const auto before = names_in(problem.folder().path());
   Program limited({"/bin/sh", "-c", "ulimit -f 1; exec " + command}, problem.folder().path());
   check_failed(limited.wait(), ErrorCode::no_space, "A.mtx", {});
@@ -52,7 +52,7 @@ TEST_CASE("a full disk is told and leaves nothing") {
 TEST_CASE("a report that cannot be printed is a failure") {
   const ScratchProblem problem;
   for (const std::string& command : {reconstruct, response, std::string("inspect y.npy")}) {
-    Program full({"/bin/sh", "-c", std::string(COMPUEYE_PROGRAM) + " " + command + " > /dev/full"},
+    Program full({"/bin/sh", "-c", compueye_command("").front() + " " + command + " > /dev/full"},
                  problem.folder().path());
     check_failed(full.wait(), ErrorCode::no_space, "standard output", {});
   }

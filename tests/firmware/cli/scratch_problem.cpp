@@ -5,11 +5,12 @@
 #include "firmware/files/npy.hpp"
 #include "firmware/files/response_file.hpp"
 #include "tests/firmware/cli/program.hpp"
+#include "tests/source_folder.hpp"
 
 namespace compueye::test {
 
 std::string board_folder(std::string_view name) {
-  return std::string(COMPUEYE_SOURCE_DIR) + "/boards/" + std::string(name);
+  return source_path("boards/" + std::string(name));
 }
 
 void put_npy(const TemporaryFolder& folder, std::string_view name, const std::vector<std::int64_t>& shape,

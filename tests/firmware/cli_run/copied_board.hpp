@@ -11,6 +11,7 @@
 
 #include "tests/firmware/cli_run/program.hpp"
 #include "tests/firmware/temporary_folder.hpp"
+#include "tests/source_folder.hpp"
 
 namespace compueye::test {
 
@@ -19,7 +20,7 @@ class CopiedBoard {
  public:
   explicit CopiedBoard(const std::string& name = "sim-8x8") : path_(folder_ / name) {
     std::filesystem::create_directory(path_);
-    std::filesystem::copy_file(std::filesystem::path(COMPUEYE_SOURCE_DIR) / "boards" / name / "board.toml",
+    std::filesystem::copy_file(std::filesystem::path(source_path("boards")) / name / "board.toml",
                                path_ / "board.toml");
   }
 

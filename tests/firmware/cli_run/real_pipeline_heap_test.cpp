@@ -10,6 +10,7 @@
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "recon/solver_list.hpp"
 #include "tests/memory/allocation_counter.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -46,7 +47,7 @@ class NullSink final : public hal::FrameSink {
 }  // namespace
 
 TEST_CASE("the whole runtime, with the simulated eye and the real solver, does not use the heap while frames come") {
-  auto board = load_board(COMPUEYE_SOURCE_DIR "/boards/sim-8x8");
+  auto board = load_board(compueye::test::source_path("boards/sim-8x8"));
   REQUIRE(board.has_value());
   board->sensor.dead = {5, 9};
   for (const recon::SolverKind solver_kind : {recon::solver_named("admm"), recon::solver_named("tikhonov")}) {

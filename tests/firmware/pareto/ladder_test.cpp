@@ -6,6 +6,7 @@
 #include "firmware/operating_points/point_ladder.hpp"
 #include "tests/firmware/pareto/some_sweep.hpp"
 #include "tests/memory/allocation_counter.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -19,7 +20,7 @@ struct Counting final : FrameObserver {
 };
 
 Board board_8x8() {
-  auto board = load_board(std::filesystem::path(COMPUEYE_SOURCE_DIR) / "boards" / "sim-8x8");
+  auto board = load_board(compueye::test::source_path("boards/sim-8x8"));
   REQUIRE(board.has_value());
   return *board;
 }

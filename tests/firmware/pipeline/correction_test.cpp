@@ -66,7 +66,7 @@ Correction make(const CorrectionSettings& settings, const SourceDescription& sou
   return *made;
 }
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_number = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 }  // namespace
@@ -185,7 +185,7 @@ TEST_CASE("calibration values that cannot be right are refused by name") {
     check_error(Correction::create(settings, source), code, "correction", named);
   };
   constexpr auto range = ErrorCode::out_of_range, mismatch = ErrorCode::mismatch, usage = ErrorCode::usage;
-  refused([](auto& s) { s.dark = std::vector<float>{0, nan, 0}; }, range, {"dark", "1", "nan"});
+  refused([](auto& s) { s.dark = std::vector<float>{0, no_number, 0}; }, range, {"dark", "1", "nan"});
   refused([](auto& s) { s.dark = std::vector<float>{0, 0, infinity}; }, range, {"dark", "2", "inf"});
   refused([](auto& s) { s.gain = std::vector<float>{1, 1, 0}; }, range, {"gain", "2", "0"});
   refused([](auto& s) { s.gain = std::vector<float>{-1, 1, 1}; }, range, {"gain", "0", "-1"});
@@ -193,10 +193,10 @@ TEST_CASE("calibration values that cannot be right are refused by name") {
   refused([](auto& s) { s.dark = std::vector<float>{1}; }, mismatch, {"dark", "1", "3"});
   refused([](auto& s) { s.sees.assign(4, 1); }, mismatch, {"4", "3"});
   refused([](auto& s) { s.lsb = 0.0; }, range, {"lsb", "0"});
-  refused([](auto& s) { s.lsb = nan; }, range, {"lsb", "nan"});
+  refused([](auto& s) { s.lsb = no_number; }, range, {"lsb", "nan"});
   refused([](auto& s) { s.saturation_share = 0.0; }, range, {"saturation_share", "0"});
   refused([](auto& s) { s.max_missing_share = 1.5; }, range, {"max_missing_share", "1.5"});
-  refused([](auto& s) { s.max_missing_share = nan; }, range, {"max_missing_share", "nan"});
+  refused([](auto& s) { s.max_missing_share = no_number; }, range, {"max_missing_share", "nan"});
   refused([](auto& s) { s.dead_channels.assign(1, 3); }, range, {"3"});
   refused([](auto& s) { s.dead_channels.assign(1, -1); }, range, {"-1"});
   refused([](auto& s) { s.sees.assign(3, 0); }, usage, {});

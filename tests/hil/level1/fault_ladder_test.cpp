@@ -7,6 +7,7 @@
 #include "tests/drivers/device/eye_rig.hpp"
 #include "tests/hil/fault_table.hpp"
 #include "tests/hil/level1/fault_scripts.hpp"
+#include "tests/source_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::device;
@@ -20,7 +21,7 @@ constexpr std::uint64_t calm_frames = 20;  // in a row, to call it over
 constexpr std::int64_t recovery_limit_ns = 5 * second;
 
 const std::vector<ExpectedOutcome>& expected_outcomes() {
-  static const std::vector<ExpectedOutcome> rows = read_fault_table(COMPUEYE_SOURCE_DIR "/docs/faults.md");
+  static const std::vector<ExpectedOutcome> rows = read_fault_table(compueye::test::source_path("docs/faults.md"));
   return rows;
 }
 

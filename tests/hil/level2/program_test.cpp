@@ -14,6 +14,7 @@
 #include "firmware/app/commands/run.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/hil/level2/benches.hpp"
+#include "tests/source_folder.hpp"
 
 namespace compueye::hil {
 namespace {
@@ -31,7 +32,7 @@ protocol::EmulatorSettings eye_of(const std::string& serial, const protocol::Bus
 }
 
 std::string board(const std::string& name) {
-  return (std::filesystem::path(COMPUEYE_SOURCE_DIR) / "boards" / name).string();
+  return compueye::test::source_path("boards/" + name);
 }
 
 hal::Result<void> run(const RunOptions& options) {
