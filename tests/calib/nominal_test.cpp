@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/calib/cone_reference.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye;
 using namespace compueye::calib;
@@ -275,41 +276,40 @@ TEST_CASE("ommatidia that look away are blind rows, not missing ones") {
 }
 
 TEST_CASE("the nominal response refuses what is not an eye, and says which value") {
-  const auto refusal = [](const EyeGeometry& eye, const ObjectPlane& plane) {
-    const auto response = nominal_response(eye, plane);
-    REQUIRE_FALSE(response.has_value());
-    CHECK(response.error().code == hal::ErrorCode::out_of_range);
-    return response.error().text();
+  const auto refused = [](const EyeGeometry& eye, const ObjectPlane& plane, const char* place,
+                          const test::Named& named) {
+    test::check_error(nominal_response(eye, plane), hal::ErrorCode::out_of_range, place, named);
   };
   constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
   const EyeGeometry good = small_eye(Lattice::fisheye, 60.0);
   EyeGeometry eye = good;
   eye.acceptance_rad = 121.0 * deg;
-  CHECK(refusal(eye, small_plane).find("acceptance") != std::string::npos);
+  refused(eye, small_plane, "eye.acceptance_angle_deg", {"121", "120"});
   eye.acceptance_rad = not_a_number;
-  CHECK(refusal(eye, small_plane).find("acceptance") != std::string::npos);
+  refused(eye, small_plane, "eye.acceptance_angle_deg", {"nan", "120"});
   eye = good;
   eye.rows = 0;
-  CHECK(refusal(eye, small_plane).find("eye.rows") != std::string::npos);
+  refused(eye, small_plane, "eye.rows", {"0", "1", "4096"});
   ObjectPlane plane = small_plane;
   plane.distance_mm = 0.0;
-  CHECK(refusal(good, plane).find("object.distance_mm") != std::string::npos);
+  refused(good, plane, "object.distance_mm", {"0"});
+  plane.distance_mm = -2.5;
+  refused(good, plane, "object.distance_mm", {"-2.5"});
   plane.distance_mm = not_a_number;
-  CHECK(refusal(good, plane).find("object.distance_mm") != std::string::npos);
+  refused(good, plane, "object.distance_mm", {"nan"});
   eye = good;
   eye.radius_mm = 1e20;
-  CHECK(refusal(eye, small_plane).find("object.distance_mm") != std::string::npos);
+  refused(eye, small_plane, "object.distance_mm", {"10", "100000000000000000000"});
   eye.radius_mm = std::numeric_limits<double>::max();
   eye.lens_height_mm = std::numeric_limits<double>::max();
-  CHECK(refusal(eye, small_plane).find("object.distance_mm") != std::string::npos);
+  refused(eye, small_plane, "object.distance_mm", {"10", std::to_string(eye.radius_mm)});
 }
 
 TEST_CASE("a response beyond the limit is refused by its size before it is computed") {
   const EyeGeometry eye = small_eye(Lattice::fisheye, 120.0);
   const auto response = nominal_response(eye, {8192, 8192, 8.0, 8.0, 10.0});
-  REQUIRE_FALSE(response.has_value());
-  CHECK(response.error().code == hal::ErrorCode::no_space);
-  CHECK(response.error().text().find("16 GiB") != std::string::npos);
+  test::check_error(response, hal::ErrorCode::no_space, "nominal response",
+                    {std::to_string(nominal_response_limit_bytes >> 30)});
 }
 
 TEST_CASE("progress runs to its total, and can give up") {

@@ -7,9 +7,12 @@
 #include <string>
 
 #include "tests/firmware/app_board_text.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
+using compueye::test::check_error;
+using compueye::test::Named;
 
 namespace {
 
@@ -21,20 +24,17 @@ const Setting& option(std::string_view name) {
 }
 
 Board good_board() {
-  auto board = parse_board(test::good_board, "board.toml");
+  auto board = parse_board(firmware::test::good_board, "board.toml");
   REQUIRE(board.has_value());
   return std::move(*board);
 }
 
-void check_refused(std::string_view name, std::string_view text, std::string_view expected) {
+void check_refused(std::string_view name, std::string_view text, const Named& expected) {
   CAPTURE(name);
   CAPTURE(text);
   const auto refused = value_from(option(name), text, name);
-  REQUIRE_FALSE(refused.has_value());
-  CHECK(refused.error().code == hal::ErrorCode::usage);
-  CHECK(refused.error().place == name);
+  check_error(refused, hal::ErrorCode::usage, std::string(name), expected);
   CHECK(refused.error().sentence.find("'" + std::string(text) + "'") != std::string::npos);
-  CHECK(refused.error().sentence.find(expected) != std::string::npos);
 }
 
 }  // namespace
@@ -112,22 +112,22 @@ TEST_CASE("a command line has the last word, and errors name it") {
 
 TEST_CASE("what is typed wrong is answered with what was typed and what was expected") {
   for (const char* text : {"0", "-5", "1000001", "2.5", "99999999999999999999", "", "ten"}) {
-    check_refused("--iterations", text, "a whole number from 1 to 1000000");
+    check_refused("--iterations", text, {"1", "1000000"});
   }
   for (const char* text : {"-1", "nan", "inf", "1e999", "0.1x"}) {
-    check_refused("--lambda", text, "a finite number of 0 or more");
+    check_refused("--lambda", text, {"0"});
   }
-  check_refused("--lambda", "1e13", "at most 1000000000000");
-  check_refused("--rho", "0", "a finite number above 0");
-  check_refused("--rho", "1e-13", "at least 1e-12");
-  check_refused("--relaxation", "2", "a number above 0 and below 2");
-  check_refused("--distance", "-3", "a finite number above 0");
-  check_refused("--threads", "65", "1 to 64");
-  check_refused("--box", "1,0", "two finite numbers with the lower first, such as 0,1");
-  check_refused("--box", "1", "such as 0,1");
-  check_refused("--box", "0,nan", "such as 0,1");
-  check_refused("--solver", "amdm", "did you mean 'admm'?");
-  check_refused("--start", "hot", "cold, warm");
+  check_refused("--lambda", "1e13", {"1000000000000"});
+  check_refused("--rho", "0", {"0"});
+  check_refused("--rho", "1e-13", {"1e-12"});
+  check_refused("--relaxation", "2", {"0", "2"});
+  check_refused("--distance", "-3", {"0"});
+  check_refused("--threads", "65", {"1", "64"});
+  check_refused("--box", "1,0", {"0,1"});
+  check_refused("--box", "1", {"0,1"});
+  check_refused("--box", "0,nan", {"0,1"});
+  check_refused("--solver", "amdm", {"admm?"});
+  check_refused("--start", "hot", {"cold", "warm"});
   Board board = good_board();
   CHECK_FALSE(set(board, option("--iterations"), "0", "--iterations").has_value());
   CHECK(board.plan.iterations == 100);

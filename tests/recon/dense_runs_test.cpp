@@ -12,6 +12,7 @@
 #include "recon/setup/dense_run_tables.hpp"
 #include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
+#include "tests/hal/error_check.hpp"
 #include "tests/recon/random_problem.hpp"
 
 using namespace compueye;
@@ -248,15 +249,13 @@ TEST_CASE("an operator that the response does not fit is refused in a sentence t
   recon::Plan plan;
   plan.op = OperatorKind::running_sums;
   const auto sums = recon::Reconstructor::create(measured, objective, plan);
-  REQUIRE_FALSE(sums.has_value());
-  CHECK(sums.error().code == hal::ErrorCode::unsupported);
-  CHECK(sums.error().place == "operator");
-  CHECK(sums.error().sentence.find("expected dense-runs") != std::string::npos);
+  test::check_error(sums, hal::ErrorCode::unsupported, "operator",
+                    {std::to_string(measured.nonzeros()), "dense-runs", "csr", "dense"});
   Random random(87);
   plan.op = OperatorKind::dense_runs_int8;
   const auto tiny = recon::Reconstructor::create(random_response(random, 4, Picture{3, 4}, 1.0), objective, plan);
-  REQUIRE_FALSE(tiny.has_value());
-  CHECK(tiny.error().sentence.find("16 pixels") != std::string::npos);
+  test::check_error(tiny, hal::ErrorCode::unsupported, "operator",
+                    {std::to_string(recon::least_run_pixels), "12", "dense", "csr"});
   for (const OperatorKind kind : {OperatorKind::dense, OperatorKind::csr, OperatorKind::dense_runs}) {
     plan.op = kind;
     const auto made = recon::Reconstructor::create(measured, objective, plan);

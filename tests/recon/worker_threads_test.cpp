@@ -17,6 +17,7 @@
 #include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
 #include "recon/solver_list.hpp"
+#include "tests/hal/error_check.hpp"
 #include "tests/memory/allocation_counter.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/solve_frame.hpp"
@@ -239,9 +240,7 @@ TEST_CASE("a number of threads out of range is refused") {
   recon::Plan plan;
   for (const int threads : {0, -1, recon::WorkerThreads::most + 1}) {
     plan.threads = threads;
-    const auto made = recon::Reconstructor::create(measured(4), objective, plan);
-    REQUIRE_FALSE(made.has_value());
-    CHECK(made.error().place == "threads");
-    CHECK(made.error().sentence.find("1 to 64") != std::string::npos);
+    test::check_error(recon::Reconstructor::create(measured(4), objective, plan), hal::ErrorCode::out_of_range,
+                      "threads", {std::to_string(threads), "1", std::to_string(recon::WorkerThreads::most)});
   }
 }

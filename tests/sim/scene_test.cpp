@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "sim/pictures/built_in_scenes.hpp"
 #include "sim/scene_truth.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye;
 using hal::ErrorCode;
@@ -79,31 +81,30 @@ TEST_CASE("the truth is black beyond a small scene and cuts a large one") {
 
 TEST_CASE("a scene that cannot be shown is refused with its name and the offending value") {
   const hal::ObjectPlane object;
-  const auto refused = [&](const sim::Scene& scene, ErrorCode code, const char* words) {
-    const auto result = sim::validate(scene);
-    REQUIRE_FALSE(result.has_value());
-    CHECK(result.error().code == code);
-    CHECK(result.error().place == scene.name);
-    CHECK(result.error().sentence.find(words) != std::string::npos);
+  const auto refused = [&](const sim::Scene& scene, ErrorCode code, const test::Named& named) {
+    test::check_error(sim::validate(scene), code, scene.name, named);
     CHECK_FALSE(sim::scene_truth(scene, object).has_value());
   };
-  refused(sim::scene_on(object, "empty", hal::Image()), ErrorCode::out_of_range, "0x0");
+  refused(sim::scene_on(object, "empty", hal::Image()), ErrorCode::out_of_range, {"0x0"});
   sim::Scene scene = sim::scene_on(object, "broken", hal::Image(3, 4, 0.5F));
   CHECK(sim::validate(scene).has_value());
-  for (const float bad : {-0.1F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+  for (const auto& [bad, text] : {std::pair{-0.1F, "-0.1"}, std::pair{std::numeric_limits<float>::quiet_NaN(), "nan"},
+                                  std::pair{std::numeric_limits<float>::infinity(), "inf"}}) {
     scene.picture.at(1, 2) = bad;
-    refused(scene, ErrorCode::out_of_range, "pixel (1, 2)");
+    refused(scene, ErrorCode::out_of_range, {"(1, 2)", text});
   }
   scene.picture = hal::Image(3, 4, 0.5F);
   scene.picture.pixels.pop_back();
-  refused(scene, ErrorCode::mismatch, "11 pixels");
+  refused(scene, ErrorCode::mismatch, {"11", "3x4"});
   scene.picture = hal::Image(3, 4, 0.5F);
   scene.width_mm = 0.0;
-  refused(scene, ErrorCode::out_of_range, "width_mm");
+  refused(scene, ErrorCode::out_of_range, {"width_mm", "0"});
+  scene.width_mm = -0.5;
+  refused(scene, ErrorCode::out_of_range, {"width_mm", "-0.5"});
   scene.width_mm = 1.0;
   scene.height_mm = std::numeric_limits<double>::infinity();
-  refused(scene, ErrorCode::out_of_range, "height_mm");
+  refused(scene, ErrorCode::out_of_range, {"height_mm", "inf"});
   scene.height_mm = 1.0;
   scene.distance_mm = -3.0;
-  refused(scene, ErrorCode::out_of_range, "distance_mm");
+  refused(scene, ErrorCode::out_of_range, {"distance_mm", "-3"});
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/hal/error_check.hpp"
+
 using namespace compueye;
 using hal::SensorSettings;
 using sim::Sensor;
@@ -106,10 +108,10 @@ TEST_CASE("steps can be switched off one by one without touching the others") {
   for (std::size_t m = 0; m < signals.size(); ++m) CHECK(with.codes[m] - without.codes[m] == 100);
   REQUIRE(sensor.enable("read noise", false).has_value());
   for (const std::int32_t code : digitise(sensor, signals).codes) CHECK(code == 3200);
-  const auto unknown = sensor.enable("shot noise", true);
-  REQUIRE_FALSE(unknown.has_value());
-  CHECK(unknown.error().code == hal::ErrorCode::not_found);
-  CHECK(unknown.error().sentence.find("read noise") != std::string::npos);
+  const auto unknown = sensor.enable("shot-noise", true);
+  test::check_error(unknown, hal::ErrorCode::not_found, "sensor step", {"shot-noise"});
+  REQUIRE(sensor.steps().size() == 2);
+  for (const auto& step : sensor.steps()) CHECK(test::names(unknown.error().sentence, step.name));
 }
 
 TEST_CASE("sensor settings out of range are refused by name") {

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "sim/pictures/built_in_scenes.hpp"
+#include "tests/hal/error_check.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
 using namespace compueye;
@@ -361,27 +362,25 @@ TEST_CASE("a paced eye keeps its account in real time") {
 
 TEST_CASE("settings that make no sense are refused by name") {
   hal::VirtualClock clock;
-  const auto error = [&](auto change) {
+  const auto refused = [&](ErrorCode code, const std::string& place, const test::Named& named, auto change) {
     SimulatedEyeSettings settings = small_eye();
     change(settings);
-    const auto eye = SimulatedEye::create(std::move(settings), clock);
-    REQUIRE_FALSE(eye.has_value());
-    return eye.error();
-  };
-  const auto mentions = [](const hal::Error& e, const char* words) {
-    return e.text().find(words) != std::string::npos;
+    test::check_error(SimulatedEye::create(std::move(settings), clock), code, place, named);
   };
   using S = SimulatedEyeSettings;
-  CHECK(error([](S& s) { s.scenes.clear(); }).code == ErrorCode::usage);
-  CHECK(mentions(error([](S& s) { s.frames_per_scene = 0; }), "frames_per_scene is 0"));
-  CHECK(mentions(error([](S& s) { s.fifo_frames = 0; }), "fifo_frames is 0"));
-  CHECK(mentions(error([](S& s) { s.frame_rate_hz = -1.0; }), "frame_rate_hz"));
-  CHECK(mentions(error([](S& s) { s.frame_rate_hz = std::nan(""); }), "frame_rate_hz"));
-  CHECK(mentions(error([](S& s) { s.frame_rate_hz = 1e7; }), "frame_rate_hz"));
-  CHECK(mentions(error([](S& s) { s.sensor.bits = 40; }), "sensor.bits"));
-  CHECK(mentions(error([](S& s) { s.steps_off = {"reed noise"}; }), "reed noise"));
-  CHECK(mentions(error([](S& s) { s.optics.eye.rows = 0; }), "eye.rows"));
-  CHECK(mentions(error([](S& s) { s.scenes[0].picture.pixels[3] = -1.0F; }), "fig2: pixel (0, 3)"));
-  CHECK(mentions(error([](S& s) { s.faults.invalid_channels = {{64, 0}}; }), "channel is 64"));
-  CHECK(error([](S& s) { s.faults.lost_frames = {4, 9, 4}; }).code == ErrorCode::usage);
+  const std::string serial = small_eye().serial;
+  refused(ErrorCode::usage, serial, {}, [](S& s) { s.scenes.clear(); });
+  refused(ErrorCode::out_of_range, serial, {"frames_per_scene", "0", "1"}, [](S& s) { s.frames_per_scene = 0; });
+  refused(ErrorCode::out_of_range, serial, {"fifo_frames", "0", "1"}, [](S& s) { s.fifo_frames = 0; });
+  refused(ErrorCode::out_of_range, serial, {"frame_rate_hz", "-1"}, [](S& s) { s.frame_rate_hz = -1.0; });
+  refused(ErrorCode::out_of_range, serial, {"frame_rate_hz", "nan"}, [](S& s) { s.frame_rate_hz = std::nan(""); });
+  refused(ErrorCode::out_of_range, serial, {"frame_rate_hz", "10000000"}, [](S& s) { s.frame_rate_hz = 1e7; });
+  refused(ErrorCode::out_of_range, "sensor.bits", {"40", "24"}, [](S& s) { s.sensor.bits = 40; });
+  refused(ErrorCode::not_found, "sensor step", {"reed-noise"}, [](S& s) { s.steps_off = {"reed-noise"}; });
+  refused(ErrorCode::out_of_range, "eye.rows", {"0", "4096"}, [](S& s) { s.optics.eye.rows = 0; });
+  refused(ErrorCode::out_of_range, "fig2", {"(0, 3)", "-1"}, [](S& s) { s.scenes[0].picture.pixels[3] = -1.0F; });
+  refused(ErrorCode::out_of_range, "faults.invalid_channels", {"64", "63"}, [](S& s) {
+    s.faults.invalid_channels = {{64, 0}};
+  });
+  refused(ErrorCode::usage, "faults.lost_frames", {"4"}, [](S& s) { s.faults.lost_frames = {4, 9, 4}; });
 }

@@ -7,6 +7,7 @@
 
 #include "drivers/protocol/status.hpp"
 #include "tests/drivers/protocol/wire_samples.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye;
 using namespace compueye::protocol;
@@ -38,40 +39,41 @@ TEST_CASE("a configuration survives storing") {
 TEST_CASE("a configuration is held against the device's limits") {
   DeviceDescriptor device = descriptor_of(16, 14);
   REQUIRE(check_configuration(good(), device));
-  const auto refused = [&](auto change, const char* word) {
+  device.most_frame_rate_mhz = 9'000'000;
+  const auto refused = [&](auto change, const test::Named& named) {
     Configuration c = good();
     change(c);
-    const auto result = check_configuration(c, device);
-    REQUIRE_FALSE(result);
-    CHECK(result.error().code == ErrorCode::out_of_range);
-    CHECK(result.error().place == device.serial);
-    CHECK(result.error().sentence.find(word) != std::string::npos);
+    test::check_error(check_configuration(c, device), ErrorCode::out_of_range, device.serial, named);
   };
-  refused([](auto& c) { c.config_id = 0; }, "config_id");
-  refused([](auto& c) { c.format = SampleFormat::u12; }, "u12");
-  refused([](auto& c) { c.format = static_cast<SampleFormat>(77); }, "unknown");
-  refused([](auto& c) { c.frame_rate_mhz = 999; }, "999");
-  refused([](auto& c) { c.frame_rate_mhz = 10'000'001; }, "10000001");
-  refused([](auto& c) { c.frame_rate_mhz = 0; }, "rate");
-  refused([](auto& c) { c.exposure_ns = 999; }, "exposure");
-  refused([](auto& c) { c.exposure_ns = 1'000'000'001; }, "exposure");
-  refused([](auto& c) { c.exposure_ns = 10'000'001; }, "10000000");  // longer than the period
+  refused([](auto& c) { c.config_id = 0; }, {"config_id", "0"});
+  refused([](auto& c) { c.format = SampleFormat::u12; }, {"u12"});
+  const auto none = static_cast<SampleFormat>(77);
+  refused([&](auto& c) { c.format = none; }, {std::string(name(none))});
+  refused([](auto& c) { c.frame_rate_mhz = 999; }, {"999", "1000", "9000000"});
+  refused([](auto& c) { c.frame_rate_mhz = 9'000'001; }, {"9000001", "1000", "9000000"});
+  refused([](auto& c) { c.frame_rate_mhz = 0; }, {"0", "1000", "9000000"});
+  refused([](auto& c) { c.exposure_ns = 999; }, {"999", "1000", "10000000"});
+  refused([](auto& c) { c.exposure_ns = 1'000'000'001; }, {"1000000001", "1000", "10000000"});
+  refused([](auto& c) { c.exposure_ns = 10'000'001; }, {"10000001", "1000", "10000000"});  // longer than the period
   device.formats = {SampleFormat::u12};
   CHECK_FALSE(device.offers(SampleFormat::u12));  // too shallow for 14 bits
 }
 
-TEST_CASE("an echo that differs names the field, any byte that differs is noticed") {
+TEST_CASE("an echo that differs is told with what was set, any byte that differs is noticed") {
   std::array<std::byte, Configuration::bytes> sent{};
   store(good(), sent);
-  const char* const words[] = {"config_id", "frame rate", "exposure", "format"};
+  const auto numbers = [](const Configuration& c) {
+    return std::array{c.config_id, c.frame_rate_mhz, c.exposure_ns, static_cast<std::uint32_t>(c.format)};
+  };
   for (std::size_t at = 0; at < sent.size(); ++at) {
     CAPTURE(at);
     auto echo = sent;
     echo[at] ^= std::byte{1};
-    const auto result = check_echo(good(), echo, "CE-1");
-    REQUIRE_FALSE(result);
-    CHECK(result.error().code == ErrorCode::mismatch);
-    CHECK(result.error().sentence.find(at <= 12 ? words[at / 4] : "reserved") != std::string::npos);
+    test::Named named{"0"};  // what a reserved byte has to be
+    if (at <= 12) {
+      named = {std::to_string(numbers(load_configuration(echo))[at / 4]), std::to_string(numbers(good())[at / 4])};
+    }
+    test::check_error(check_echo(good(), echo, "CE-1"), ErrorCode::mismatch, "CE-1", named);
   }
   CHECK(check_echo(good(), std::span(sent).first(15), "CE-1").error().code == ErrorCode::bad_format);
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tests/drivers/protocol/emulated_eye.hpp"
+#include "tests/hal/error_check.hpp"
 
 using namespace compueye;
 using namespace compueye::protocol;
@@ -138,13 +139,10 @@ TEST_CASE("faults that damage the way: what is not whole is noticed, the rest is
   }
 }
 
-TEST_CASE("fault wrong_echo: configuring aborts and names the field") {
+TEST_CASE("fault wrong_echo: configuring aborts and names the exposure that came back") {
   on_streaming_eyes([](EmulatedEye& eye) {
     eye.inject({.kind = FaultKind::wrong_echo});
-    const auto started = eye.start();
-    REQUIRE_FALSE(started);
-    CHECK(started.error().code == ErrorCode::mismatch);
-    CHECK(started.error().sentence.find("exposure") != std::string::npos);
+    test::check_error(eye.start(), ErrorCode::mismatch, "eye", {"1001000", "1000000"});
     expect_recovery(eye);
   });
 }
@@ -273,10 +271,7 @@ TEST_CASE("fault babble: garbage without end is never a frame, and ends with a b
 TEST_CASE("fault other_version: found out when it is identified, and by PING") {
   on_streaming_eyes([](EmulatedEye& eye) {
     eye.inject({.kind = FaultKind::other_version, .value = 0x21});
-    const auto descriptor = eye.identify();
-    REQUIRE_FALSE(descriptor);
-    CHECK(descriptor.error().code == ErrorCode::unsupported);
-    CHECK(descriptor.error().sentence.find("2.1") != std::string::npos);
+    test::check_error(eye.identify(), ErrorCode::unsupported, eye.transport.describe().bus, {"2.1", "1.0"});
     std::byte nonce[4] = {};
     std::array<std::byte, PingReply::bytes> pong{};
     REQUIRE(eye.request(Request::ping, nonce, pong));

@@ -14,6 +14,7 @@
 #include "drivers/transport/usb_libusb.hpp"
 #include "hal/clock.hpp"
 #include "tests/drivers/protocol/wire_samples.hpp"
+#include "tests/hal/error_check.hpp"
 #include "tests/hil/level2/hid_port.hpp"
 #include "tests/hil/level2/testbed.hpp"
 
@@ -105,10 +106,7 @@ void check_unplugging(AnyBench& bench, const std::string& serial, const std::str
 
   bench.port.plug();
   AnyBench::wait_for_boot();
-  const auto refused = bench.transport.open();
-  REQUIRE_FALSE(refused);
-  CHECK(refused.error().code == hal::ErrorCode::not_found);
-  CHECK(refused.error().text().find(other) != std::string::npos);
+  test::check_error(bench.transport.open(), hal::ErrorCode::not_found, serial, {serial, other});
 
   bench.port.unplug(serial);
   bench.port.plug();

@@ -37,10 +37,8 @@ TEST_CASE("hid: an eye is listed and selected by its serial") {
   CHECK(wanted.describe().bus == right.name());
   CHECK(wanted.describe().max_packet == 64);
   transport::HidTransport absent({.serial = "MIDDLE"});
-  const auto refused = absent.open();
-  REQUIRE_FALSE(refused);
-  CHECK(refused.error().code == hal::ErrorCode::not_found);
-  CHECK(refused.error().text().find("LEFT") != std::string::npos);
+  test::check_error(absent.open(), hal::ErrorCode::not_found, "MIDDLE",
+                    {"MIDDLE", "LEFT", left.name(), "RIGHT", right.name()});
 }
 
 TEST_CASE("hid: every frame of a stream arrives bit for bit, and nothing after STOP") {

@@ -59,10 +59,8 @@ TEST_CASE("hid: a failing read is io, and the next one works") {
   REQUIRE(bench.host.start());
   bench.check_frames(0, 10);
   bench.port.file().fail_reads(EIO);
-  const auto got = bench.read(500);
-  REQUIRE_FALSE(got);
-  CHECK(got.error().code == hal::ErrorCode::io);
-  CHECK(got.error().text().find("CE-1") != std::string::npos);
+  test::check_error(bench.read(500), hal::ErrorCode::io, bench.transport.describe().bus + " (CE-1)",
+                    {std::to_string(EIO)});
   const auto block = bench.host.frame();
   REQUIRE(block);
   CHECK(bench.host.right(*block, block->frame));

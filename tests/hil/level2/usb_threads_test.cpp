@@ -11,6 +11,7 @@
 #include "drivers/transport/usb_libusb.hpp"
 #include "hal/clock.hpp"
 #include "tests/drivers/protocol/wire_samples.hpp"
+#include "tests/hal/error_check.hpp"
 #include "tests/hil/level2/testbed.hpp"
 #include "tests/hil/usbfs_shim.hpp"
 
@@ -173,10 +174,8 @@ TEST_CASE("an eye that may not be opened is listed with its serial, and the refu
   transport::UsbSettings settings;
   settings.serial = eye.cable.serial();
   transport::UsbTransport refused(settings);
-  const auto opened = refused.open();
-  REQUIRE_FALSE(opened);
-  CHECK(opened.error().code == hal::ErrorCode::io);
-  CHECK(opened.error().text().find("70-compueye.rules") != std::string::npos);
+  test::check_error(refused.open(), hal::ErrorCode::io, eyes->at(0).bus,
+                    {eyes->at(0).path, "boards/generic-usb/70-compueye.rules"});
   settings.serial = "OTHER";
   transport::UsbTransport absent(settings);
   CHECK(absent.open().error().code == hal::ErrorCode::not_found);
