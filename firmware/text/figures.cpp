@@ -204,12 +204,14 @@ std::string Figures::sentence(std::string_view sentence, std::string_view missin
       const std::string_view name = sentence.substr(at + 1, sentence.find('}', at) - at - 1);
       const std::size_t colon = std::min(name.find(':'), name.size());
       const Value* value = find(name.substr(0, colon));
+      const std::string_view form = name.substr(std::min(colon + 1, name.size()));
       const bool there = value != nullptr && !std::holds_alternative<std::monostate>(value->data());
       says_something = says_something || (there && !value->says_nothing());
       if (value == nullptr && !may_lack) {
         text += sentence.substr(at, name.size() + 2);
       } else {
-        text += there ? in_form(*value, name.substr(std::min(colon + 1, name.size()))) : missing;
+        const bool has_words = form.find('|') != std::string_view::npos;
+        text += there || has_words ? in_form(value != nullptr ? *value : Value(), form) : missing;
       }
       at += name.size() + 1;
     } else {

@@ -130,8 +130,9 @@ Figures sweep_report(const Sweep& sweep) {
   f.tell(
       "{board}: {seeing_channels:,} of {channels:,} ommatidia see its {rows} x {cols} pixels; {machine.cores} cores of "
       "{machine.cpu}, one in use where no threads are named\n"
-      "{pictures_a_level} scenes ({scenes}, seeds from {first_scene_seed}) at {levels:count} noise levels, through the "
-      "simulated eye; lambda by rule from sigma\n");
+      "{pictures_a_level} scenes ({scenes}, seeds from {first_scene_seed}) at {levels:count} noise "
+      "level[{levels.1:'s'}], "
+      "through the simulated eye; lambda by rule from sigma\n");
   for (std::size_t level = 0; level < sweep.levels.size(); ++level) tell_level(sweep, level, f);
   if (sweep.levels.size() > 1) tell_level(sweep, sweep.levels.size(), f);
   tell_foot(sweep, f);

@@ -56,7 +56,7 @@ TEST_CASE("a figure has the form that its sentence asks for") {
 TEST_CASE("what is null is told so, and a part that says nothing is left out") {
   const Figures f = some();
   CHECK(f.sentence("{none} {none:3} {none.inner} {scenes.9}") == "n/a n/a n/a n/a");
-  CHECK(f.sentence("{none} {none:bytes}", "-") == "- -");
+  CHECK(f.sentence("{none} {none:bytes} {none:3|nothing}", "-") == "- - nothing");
   CHECK(f.sentence("a[ {dropped.corrupt} corrupt][, {dropped.stopped} stopped][ ({nothing})][{serial}{none}]z") ==
         "a, 1 stoppedz");
   CHECK(f.sentence("[{dropped.corrupt} of {frames}]") == "0 of 1");
