@@ -7,6 +7,7 @@
 #include "firmware/files/npy.hpp"
 #include "firmware/files/png.hpp"
 #include "recon/option_names.hpp"
+#include "recon/setup/solver_row.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
 #include "tests/firmware/cli/program.hpp"
 #include "tests/firmware/cli/scratch_problem.hpp"
@@ -266,6 +267,17 @@ TEST_CASE("reconstruct --help states what goes with what and an example") {
         "  tsvd      identity                            none\n", "numbered", "compueye reconstruct --response"}) {
     CAPTURE(part);
     CHECK(help.out.find(part) != std::string::npos);
+  }
+}
+
+TEST_CASE("a start from cold is what every solver does, said or not") {
+  const TemporaryFolder folder;
+  put_frames(folder, 1);
+  for (const auto& solver : recon::solver_names()) {
+    CAPTURE(solver.name);
+    const std::string command = std::string(small_eye) + "--sigma 0.002 --solver " + std::string(solver.name);
+    CHECK(run_compueye(command + " --start cold", folder.path()).exit_code == 0);
+    CHECK(run_compueye(command + " --start warm", folder.path()).exit_code == (solver.kind->starts_warm() ? 0 : 2));
   }
 }
 
