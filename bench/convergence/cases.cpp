@@ -1,7 +1,8 @@
 #include "bench/convergence/cases.hpp"
-#include "recon/solver_list.hpp"
 
 #include <utility>
+
+#include "recon/solver_list.hpp"
 
 namespace compueye::bench {
 namespace {

@@ -9,7 +9,7 @@
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
-#include "recon/solver_list.hpp"
+#include "recon/setup/solver_row.hpp"
 
 namespace compueye::firmware {
 namespace {

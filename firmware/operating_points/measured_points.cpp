@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "recon/setup/factor.hpp"
-#include "recon/solver_list.hpp"
+#include "recon/setup/solver_row.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -1,6 +1,4 @@
 #include "studies/accuracy_and_time/point_meter.hpp"
-#include "recon/setup/operator_list.hpp"
-#include "recon/solver_list.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +10,7 @@
 
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "hal/try.hpp"
+#include "recon/setup/solver_row.hpp"
 
 namespace compueye::firmware {
 namespace {

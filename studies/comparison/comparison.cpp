@@ -12,7 +12,6 @@
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
-#include "recon/setup/operator_list.hpp"
 #include "recon/setup/penalty_rule.hpp"
 #include "recon/solver_list.hpp"
 #include "studies/comparison/samples.hpp"

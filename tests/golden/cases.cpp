@@ -1,5 +1,4 @@
 #include "tests/golden/cases.hpp"
-#include "recon/solver_list.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +8,7 @@
 #include "calib/nominal.hpp"
 #include "calib/plausible_response.hpp"
 #include "recon/lambda_rule.hpp"
+#include "recon/solver_list.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
 #include "sim/random.hpp"
 #include "tests/recon/solve_frame.hpp"

@@ -1,10 +1,10 @@
 #include "studies/accuracy_and_time/point_meter.hpp"
-#include "recon/solver_list.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
+#include "recon/solver_list.hpp"
 #include "tests/studies/boards.hpp"
 
 using namespace compueye;

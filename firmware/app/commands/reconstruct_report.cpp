@@ -6,7 +6,7 @@
 
 #include "firmware/operating_points/measured_points.hpp"
 #include "recon/option_names.hpp"
-#include "recon/solver_list.hpp"
+#include "recon/setup/solver_row.hpp"
 
 namespace compueye::firmware {
 namespace {
