@@ -30,7 +30,7 @@ std::string extension_of(const fs::path& path) {
 
 bool looks_like_a_file(const fs::path& path) {
   std::error_code ignored;
-  return extension_of(path) == ".png" || path.has_parent_path() || fs::exists(path, ignored);
+  return path.has_extension() || path.has_parent_path() || fs::exists(path, ignored);
 }
 
 /// The largest rectangle of the picture's own shape within the plane.

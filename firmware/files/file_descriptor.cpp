@@ -119,22 +119,23 @@ int write_all(int fd, std::span<const std::byte> bytes) noexcept {
   return 0;
 }
 
-hal::Result<std::string> read_whole_file(const std::string& path, std::uint64_t max_bytes) {
+hal::Result<std::string> read_whole_file(const std::string& path, std::uint64_t max_bytes, const AcceptBegin& accept) {
   const FileDescriptor file = TRY(open_for_reading(path));
   constexpr std::size_t step = 1U << 20U;
   const auto known = regular_size(file);
   std::string text;
-  for (;;) {
-    // A regular file is read in one go; one byte more than its size shows at once that its end is reached.
-    const std::size_t want = known && text.empty() && *known <= max_bytes ? static_cast<std::size_t>(*known) + 1 : step;
+  for (std::size_t want = first_piece_bytes;; want = step) {
     if ((known && *known > max_bytes) || text.size() > max_bytes) {
       const std::string size = known ? "has " + std::to_string(*known) : "has more than " + std::to_string(max_bytes);
       return hal::fail(hal::ErrorCode::no_space, path, size + " bytes, expected at most " + std::to_string(max_bytes));
     }
     const std::size_t before = text.size();
+    // A regular file is read in one go; one byte more than its size shows at once that its end is reached.
+    if (before == first_piece_bytes && known && *known >= before) want = static_cast<std::size_t>(*known) - before + 1;
     text.resize(before + want);
     const std::size_t got = TRY(read_some(file, path, std::as_writable_bytes(std::span(text).subspan(before))));
     text.resize(before + got);
+    if (before == 0 && accept) TRY(accept(text));
     if (got < want) return text;
   }
 }

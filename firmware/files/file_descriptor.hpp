@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,7 +58,13 @@ class FileDescriptor {
 /// Writes everything, or returns the errno that stopped it. Neither allocates nor throws.
 [[nodiscard]] int write_all(int fd, std::span<const std::byte> bytes) noexcept;
 
-/// The whole file. A file larger than `max_bytes` is refused with no_space before it is read.
-[[nodiscard]] hal::Result<std::string> read_whole_file(const std::string& path, std::uint64_t max_bytes);
+/// Says of the first `first_piece_bytes` of a file (fewer where it ends before) whether the rest is worth reading.
+using AcceptBegin = std::function<hal::Result<void>(std::string_view begin)>;
+inline constexpr std::size_t first_piece_bytes = 1024;
+
+/// The whole file. A file larger than `max_bytes` is refused with no_space before it is read; one whose begin is not
+/// accepted, with the error that `accept` gives, before the rest is.
+[[nodiscard]] hal::Result<std::string> read_whole_file(const std::string& path, std::uint64_t max_bytes,
+                                                       const AcceptBegin& accept = {});
 
 }  // namespace compueye::firmware

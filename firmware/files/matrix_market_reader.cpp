@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,9 +21,10 @@ using recon::Response;
 
 constexpr std::int64_t max_rows = 1 << 24;  // 4096 x 4096 ommatidia
 constexpr std::int64_t max_cols = 1 << 26;  // 8192 x 8192 pixels
+constexpr std::string_view example_banner = "'%%MatrixMarket matrix coordinate real general'";
 constexpr std::uint64_t max_file_bytes = std::uint64_t{64} << 30U;
 
-enum class Field { real, integer, pattern };
+enum class Field { real, integer, natural, pattern };
 enum class Symmetry { general, symmetric, skew };
 
 struct Banner {
@@ -59,33 +61,35 @@ bool refuse_word(MatrixMarketScanner& scan, const std::string& word, std::string
 }
 
 bool read_banner(MatrixMarketScanner& scan, Banner& banner) {
-  constexpr std::string_view example = "'%%MatrixMarket matrix coordinate real general'";
   const std::vector<std::string> words = lower_words(scan.take_line());
   if (words.empty() || words[0] != "%%matrixmarket") {
-    return scan.fail(ErrorCode::bad_format, "is no Matrix Market banner, expected " + std::string(example));
+    return scan.fail(ErrorCode::bad_format, "is no Matrix Market banner, expected " + std::string(example_banner));
   }
   if (words.size() != 5) {
-    return scan.fail(ErrorCode::bad_format,
-                     "has a banner of " + std::to_string(words.size()) + " words, expected 5: " + std::string(example));
+    return scan.fail(ErrorCode::bad_format, "has a banner of " + std::to_string(words.size()) +
+                                                " words, expected 5: " + std::string(example_banner));
   }
   if (words[1] != "matrix") return refuse_word(scan, words[1], "'matrix'");
   if (words[2] != "coordinate" && words[2] != "array") return refuse_word(scan, words[2], "'coordinate' or 'array'");
   banner.coordinate = words[2] == "coordinate";
   if (words[3] == "integer") {
     banner.field = Field::integer;
+  } else if (words[3] == "unsigned-integer") {
+    banner.field = Field::natural;
   } else if (words[3] == "pattern" && banner.coordinate) {
     banner.field = Field::pattern;
   } else if (words[3] != "real" && words[3] != "double") {
-    return refuse_word(scan, words[3], banner.coordinate ? "'real', 'integer' or 'pattern'" : "'real' or 'integer'");
+    return refuse_word(scan, words[3],
+                       banner.coordinate ? "'real', 'integer', 'unsigned-integer' or 'pattern'"
+                                         : "'real', 'integer' or 'unsigned-integer'");
   }
-  if (words[4] == "symmetric" && banner.coordinate) {
+  if (words[4] == "symmetric") {
     banner.symmetry = Symmetry::symmetric;
-  } else if (words[4] == "skew-symmetric" && banner.coordinate && banner.field != Field::pattern) {
+  } else if (words[4] == "skew-symmetric" && banner.field != Field::pattern && banner.field != Field::natural) {
     banner.symmetry = Symmetry::skew;
   } else if (words[4] != "general") {
-    return refuse_word(
-        scan, words[4],
-        banner.coordinate ? "'general', 'symmetric' or 'skew-symmetric' (not with a pattern)" : "'general'");
+    return refuse_word(scan, words[4],
+                       "'general', 'symmetric' or 'skew-symmetric' (not with a pattern or unsigned integers)");
   }
   return true;
 }
@@ -93,6 +97,35 @@ bool read_banner(MatrixMarketScanner& scan, Banner& banner) {
 struct Sizes {
   std::int64_t rows = 0, cols = 0, entries = 0;
 };
+
+/// The row at which column `col` of an array file begins: a symmetric one holds the lower triangle.
+std::int64_t first_row(Symmetry symmetry, std::int64_t col) {
+  return symmetry == Symmetry::general ? 0 : (symmetry == Symmetry::skew ? col + 1 : col);
+}
+
+std::int64_t array_entries(Symmetry symmetry, const Sizes& sizes) {
+  if (symmetry == Symmetry::general) return sizes.rows * sizes.cols;
+  return sizes.rows * (sizes.rows + (symmetry == Symmetry::skew ? -1 : 1)) / 2;
+}
+
+/// Before anything is allocated: what a few bytes announce may cost no more than what they hold.
+bool check_sizes(MatrixMarketScanner& scan, const Banner& banner, const Sizes& sizes) {
+  // The shortest entry is "1 1" with its line end, the shortest array value "1".
+  const auto shortest = static_cast<std::size_t>(banner.coordinate ? (banner.field == Field::pattern ? 4 : 6) : 2);
+  if (static_cast<std::uint64_t>(sizes.entries) > scan.bytes_left() / shortest + 1) {
+    return scan.fail(ErrorCode::bad_format, "announces " + std::to_string(sizes.entries) + " entries, more than the " +
+                                                std::to_string(scan.bytes_left()) +
+                                                " bytes behind it can hold: the file is truncated or the number wrong");
+  }
+  constexpr std::int64_t free_lines = 1 << 16, lines_an_entry = 16;
+  if (std::max(sizes.rows, sizes.cols) > free_lines + lines_an_entry * sizes.entries) {
+    return scan.fail(ErrorCode::out_of_range,
+                     "announces " + std::to_string(sizes.rows) + " rows and " + std::to_string(sizes.cols) +
+                         " columns of only " + std::to_string(sizes.entries) + " entries, expected at least one to " +
+                         std::to_string(lines_an_entry) + " rows and to as many columns: nearly all would be empty");
+  }
+  return true;
+}
 
 bool read_sizes(MatrixMarketScanner& scan, const Banner& banner, Sizes& sizes) {
   bool more = scan.next_line();
@@ -115,21 +148,14 @@ bool read_sizes(MatrixMarketScanner& scan, const Banner& banner, Sizes& sizes) {
                                                  std::to_string(max_rows) + " rows and " + std::to_string(max_cols) +
                                                  " columns");
   }
-  if (!banner.coordinate) sizes.entries = sizes.rows * sizes.cols;
   if (banner.symmetry != Symmetry::general && sizes.rows != sizes.cols) {
     return scan.fail(ErrorCode::bad_format, "announces a symmetric matrix of " + shape + ", expected a square one");
   }
+  if (!banner.coordinate) sizes.entries = array_entries(banner.symmetry, sizes);
   if (sizes.entries == 0) {
     return scan.fail(ErrorCode::out_of_range, "announces no entries, expected a matrix that sees something");
   }
-  // The shortest entry is "1 1" with its line end, the shortest array value "1"; before anything is allocated.
-  const auto shortest = static_cast<std::size_t>(banner.coordinate ? (banner.field == Field::pattern ? 4 : 6) : 2);
-  if (static_cast<std::uint64_t>(sizes.entries) > scan.bytes_left() / shortest + 1) {
-    return scan.fail(ErrorCode::bad_format, "announces " + std::to_string(sizes.entries) + " entries, more than the " +
-                                                std::to_string(scan.bytes_left()) +
-                                                " bytes behind it can hold: the file is truncated or the number wrong");
-  }
-  return true;
+  return check_sizes(scan, banner, sizes);
 }
 
 bool next_entry(MatrixMarketScanner& scan, std::int64_t have, std::int64_t announced) {
@@ -148,7 +174,8 @@ bool take_value(MatrixMarketScanner& scan, Field field, double& value) {
   constexpr std::int64_t exact = std::int64_t{1} << 53;
   if (field == Field::real) return scan.take_real(value);
   std::int64_t whole = 1;
-  if (field == Field::integer && !scan.take_integer("value", -exact, exact, whole)) return false;
+  const bool given = field == Field::integer || field == Field::natural;
+  if (given && !scan.take_integer("value", field == Field::integer ? -exact : 0, exact, whole)) return false;
   value = static_cast<double>(whole);
   return true;
 }
@@ -224,23 +251,40 @@ Csr compress(std::vector<Entry> entries, std::int64_t rows) {
 }
 
 bool read_array(MatrixMarketScanner& scan, const Banner& banner, const Sizes& sizes, std::vector<double>& values) {
-  values.resize(static_cast<std::size_t>(sizes.entries));
-  for (std::int64_t e = 0; e < sizes.entries; ++e) {
-    double value = 0.0;
-    if (!next_entry(scan, e, sizes.entries) || !take_value(scan, banner.field, value) ||
-        !scan.end_line("one value a line")) {
-      return false;
+  values.assign(static_cast<std::size_t>(sizes.rows * sizes.cols), 0.0);
+  std::int64_t have = 0;
+  // The file goes down the columns, the response along the rows.
+  for (std::int64_t col = 0; col < sizes.cols; ++col) {
+    for (std::int64_t row = first_row(banner.symmetry, col); row < sizes.rows; ++row, ++have) {
+      double value = 0.0;
+      if (!next_entry(scan, have, sizes.entries) || !take_value(scan, banner.field, value) ||
+          !scan.end_line("one value a line")) {
+        return false;
+      }
+      values[static_cast<std::size_t>(row * sizes.cols + col)] = value;
+      if (banner.symmetry == Symmetry::general || row == col) continue;
+      values[static_cast<std::size_t>(col * sizes.cols + row)] = banner.symmetry == Symmetry::skew ? -value : value;
     }
-    // The file goes down the columns, the response along the rows.
-    values[static_cast<std::size_t>((e % sizes.rows) * sizes.cols + e / sizes.rows)] = value;
   }
   return expect_end(scan, sizes.entries);
+}
+
+/// No banner is longer, and what has no line end need not be read to its end.
+Result<void> accept_begin(const std::string& path, std::string_view begin) {
+  if (begin.size() < first_piece_bytes || begin.find('\n') != std::string_view::npos) return {};
+  return hal::fail(ErrorCode::bad_format, path + ":1",
+                   "does not end within " + std::to_string(begin.size()) +
+                       " bytes, expected the banner of a Matrix Market file: " + std::string(example_banner));
 }
 
 }  // namespace
 
 Result<Response> read_matrix_market(const std::string& path) {
-  const std::string text = TRY(read_whole_file(path, max_file_bytes));
+  const std::string bytes =
+      TRY(read_whole_file(path, max_file_bytes, [&](std::string_view begin) { return accept_begin(path, begin); }));
+  std::string_view text = bytes;
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   MatrixMarketScanner scan(path, text);
   Banner banner;
   Sizes sizes;

@@ -93,13 +93,33 @@ Result<void> check_dims(const std::string& path, const NpyHeader& header, int mi
       "has " + std::to_string(dims) + " dimensions, shape " + shape_text(header.shape) + ", expected " + range);
 }
 
+/// Where the element that stands `at` in a file of Fortran order has its place in C order.
+std::size_t in_c_order(std::span<const std::int64_t> shape, std::size_t at) {
+  std::size_t place = 0, stride = 1;
+  for (const std::int64_t length : shape) stride *= static_cast<std::size_t>(length);
+  for (const std::int64_t length : shape) {
+    stride /= static_cast<std::size_t>(length);
+    place += at % static_cast<std::size_t>(length) * stride;
+    at /= static_cast<std::size_t>(length);
+  }
+  return place;
+}
+
+std::vector<double> in_c_order(const NpyHeader& header, std::vector<double> values) {
+  if (!header.fortran) return values;
+  std::vector<double> ordered(values.size());
+  for (std::size_t at = 0; at < values.size(); ++at) ordered[in_c_order(header.shape, at)] = values[at];
+  return ordered;
+}
+
 tl::unexpected<hal::Error> not_exact(const std::string& path, const NpyHeader& header, std::size_t at,
                                      const std::string& value) {
   const std::string expected =
       header.type->code == "b1" ? "expected 0 or 1 in an array of booleans"
                                 : "expected whole numbers of at most 2^53 in magnitude, which a double holds exactly";
   return hal::fail(ErrorCode::out_of_range, path,
-                   "has the value " + value + " at " + index_text(header.shape, at) + ", " + expected);
+                   "has the value " + value + " at " +
+                       index_text(header.shape, header.fortran ? in_c_order(header.shape, at) : at) + ", " + expected);
 }
 
 // In pieces, so that a file of several hundred MB is in memory once, as doubles, and a pipe that lies about its size
@@ -115,6 +135,9 @@ Result<std::vector<double>> read_values(const FileDescriptor& file, const std::s
         static_cast<std::size_t>(std::min<std::uint64_t>(count - values.size(), piece.size() / width));
     const std::size_t got = TRY(read_some(file, path, std::as_writable_bytes(std::span(piece).first(want * width))));
     if (got != want * width) return truncated(path, "data", count * width, values.size() * width + got);
+    for (std::size_t i = 0; header.big_endian && i < want; ++i) {
+      std::reverse(piece.data() + i * width, piece.data() + (i + 1) * width);
+    }
     if (const auto bad = header.type->append(piece.data(), want, values)) {
       return not_exact(path, header, values.size(), *bad);
     }
@@ -169,7 +192,7 @@ Result<NpyArray> read_npy(const std::string& path, int min_dims, int max_dims) {
     const std::uint64_t expected = count * header.type->bytes, actual = *size - std::min(*size, data_offset);
     if (actual < expected) return truncated(path, "data", expected, actual);
   }
-  std::vector<double> values = TRY(read_values(file, path, header, count));
+  std::vector<double> values = in_c_order(header, TRY(read_values(file, path, header, count)));
   return NpyArray{std::move(header.shape), std::move(values)};
 }
 
@@ -177,8 +200,9 @@ Result<NpyArray> read_matrix(const std::string& path) {
   return read_with_int_lengths(path, 2, 2, "a matrix of shape (rows, columns)");
 }
 
-Result<SampleArray> read_samples(const std::string& path) {
+Result<SampleArray> read_samples(const std::string& path, std::int64_t channels) {
   NpyArray array = TRY(read_with_int_lengths(path, 1, 2, "samples of shape (M,) or (frames, M)"));
+  if (array.shape == std::vector<std::int64_t>{channels, 1}) array.shape.pop_back();
   const bool framed = array.shape.size() == 2;
   return SampleArray{framed ? array.shape[0] : 1, array.shape.back(), framed, std::move(array.values)};
 }

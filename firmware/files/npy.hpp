@@ -16,20 +16,20 @@ struct NpyArray {
   std::vector<double> values;
 };
 
-/// Reads an .npy file (format versions 1.0, 2.0 and 3.0) of f2, f4, f8, i1..i8, u1..u8 or b1 elements, little-endian,
-/// C order, with `min_dims` to `max_dims` dimensions, none of them of length zero. Every element arrives exactly: an
-/// integer that a double cannot hold (beyond 2^53) is an error that names it. NaN and infinity are let through, because
-/// only the caller knows whether a channel is masked: see first_non_finite().
+/// Reads an .npy file (format versions 1.0, 2.0 and 3.0) of f2, f4, f8, i1..i8, u1..u8 or b1 elements of either byte
+/// order, in C or Fortran order, with `min_dims` to `max_dims` dimensions, none of them of length zero. Every element
+/// arrives exactly: an integer that a double cannot hold (beyond 2^53) is an error that names it. NaN and infinity are
+/// let through, because only the caller knows whether a channel is masked: see first_non_finite().
 ///
 /// Errors, each naming the file, what was found and what was expected: not_found, io; bad_format (not an .npy file,
-/// truncated, trailing bytes); unsupported (big-endian, Fortran order, complex, string, object, structured: the
-/// sentence names the NumPy call that converts it); mismatch (dimensions); out_of_range (empty, inexact integer).
+/// truncated, trailing bytes); unsupported (complex, string, object, structured: the sentence names the NumPy call that
+/// converts it); mismatch (dimensions); out_of_range (empty, inexact integer).
 [[nodiscard]] hal::Result<NpyArray> read_npy(const std::string& path, int min_dims, int max_dims);
 
 /// A matrix, shape (rows, cols).
 [[nodiscard]] hal::Result<NpyArray> read_matrix(const std::string& path);
 
-/// Samples y: (M,) for one frame, or (frames, M).
+/// Samples y: (M,) for one frame, or (frames, M). One frame may also be a column, (M, 1), where M is `channels`.
 struct SampleArray {
   std::int64_t frames = 1;
   std::int64_t channels = 0;    ///< M
@@ -40,7 +40,7 @@ struct SampleArray {
     return std::span(values).subspan(static_cast<std::size_t>(f * channels), static_cast<std::size_t>(channels));
   }
 };
-[[nodiscard]] hal::Result<SampleArray> read_samples(const std::string& path);
+[[nodiscard]] hal::Result<SampleArray> read_samples(const std::string& path, std::int64_t channels);
 
 /// Pictures x: (H, W), or (frames, H, W).
 struct PictureArray {

@@ -170,7 +170,7 @@ std::string_view refused_kind(char kind) {
   }
 }
 
-Result<const NpyType*> parse_descr(const std::string& path, std::string_view descr) {
+Result<void> parse_descr(const std::string& path, std::string_view descr, NpyHeader& header) {
   const bool has_order = !descr.empty() && std::string_view("<>|=").find(descr[0]) != std::string_view::npos;
   const char order = has_order ? descr[0] : '|';
   const std::string_view code = has_order ? descr.substr(1) : descr;
@@ -183,13 +183,14 @@ Result<const NpyType*> parse_descr(const std::string& path, std::string_view des
                      "holds " + what + " (dtype " + quoted +
                          "), expected real numbers: f4 or f8, or integers, e.g. numpy.save(name, arr.astype('<f4'))");
   }
-  if (known->bytes > 1 && order != '<') {
-    const std::string how = order == '>' ? "is big-endian" : "does not say its byte order";
+  if (known->bytes > 1 && order != '<' && order != '>') {
     return hal::fail(ErrorCode::unsupported, path,
-                     how + " (dtype " + quoted + "), expected little-endian: save arr.astype('<" + std::string(code) +
-                         "'), or arr.astype('<f4')");
+                     "does not say its byte order (dtype " + quoted + "), expected '<" + std::string(code) + "' or '>" +
+                         std::string(code) + "'");
   }
-  return known;
+  header.type = known;
+  header.big_endian = known->bytes > 1 && order == '>';
+  return {};
 }
 
 Result<std::vector<std::int64_t>> parse_shape(const std::string& path, Scanner& scan) {
@@ -257,12 +258,12 @@ Result<NpyHeader> parse_npy_header(const std::string& path, std::string_view tex
   }
   if (!scan.at_end()) return not_a_header(path, "something follows its '}'");
   if (!fields.descr || !fields.fortran || !fields.shape) return not_a_header(path, "a key is missing");
-  const NpyType* type = TRY(parse_descr(path, *fields.descr));
-  if (*fields.fortran && fields.shape->size() > 1) {
-    return hal::fail(ErrorCode::unsupported, path,
-                     "is in Fortran order, expected C order (rows first): save numpy.ascontiguousarray(arr)");
-  }
-  return NpyHeader{type, std::move(*fields.shape)};
+  NpyHeader header{.shape = std::move(*fields.shape)};
+  TRY(parse_descr(path, *fields.descr, header));
+  // The order is a matter of two axes at least that have more than one index.
+  header.fortran = *fields.fortran && std::count_if(header.shape.begin(), header.shape.end(),
+                                                    [](std::int64_t length) { return length > 1; }) > 1;
+  return header;
 }
 
 std::string format_npy_header(std::string_view descr, std::span<const std::int64_t> shape, std::size_t min_bytes) {

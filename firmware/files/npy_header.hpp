@@ -25,15 +25,17 @@ struct NpyType {
 struct NpyHeader {
   const NpyType* type = nullptr;
   std::vector<std::int64_t> shape;  ///< empty for a single number (0-d)
+  bool big_endian = false;          ///< the bytes of each number stand in reverse
+  bool fortran = false;             ///< the first index runs fastest, and that makes a difference
 };
 
 /// Number of bytes in front of the header's text: magic, version and the text's length.
 inline constexpr std::size_t npy_preamble_v1_bytes = 10;
 inline constexpr std::size_t npy_preamble_v2_bytes = 12;
 
-/// The dictionary in the header: exactly the keys descr, fortran_order and shape, in any order. Little-endian and
-/// C order only; what else NumPy may write is refused by name with the call that converts it. `path` is for messages.
-/// Errors: bad_format (not a header), unsupported (big-endian, Fortran order, complex, string, object, structured).
+/// The dictionary in the header: exactly the keys descr, fortran_order and shape, in any order. What is no plain real
+/// number is refused by name with the call that converts it. `path` is for messages.
+/// Errors: bad_format (not a header), unsupported (complex, string, object, structured, no byte order).
 [[nodiscard]] hal::Result<NpyHeader> parse_npy_header(const std::string& path, std::string_view text);
 
 /// Magic, version 1.0, length and dictionary, padded with spaces to a multiple of 64 bytes, at least `min_bytes`.

@@ -1,10 +1,12 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <csetjmp>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -151,16 +153,33 @@ Result<hal::Image> to_grey(const std::string& path, const PngReader& reader) {
   return image;
 }
 
+/// Pictures that people have and that are no PNG, by how their files begin.
+struct OtherKind {
+  std::string_view begin;
+  std::string_view name;
+};
+constexpr std::array<OtherKind, 6> other_kinds{
+    {{"\xFF\xD8\xFF", "JPEG"}, {"GIF8", "GIF"}, {"BM", "BMP"}, {"RIFF", "WebP"}, {"II*", "TIFF"}, {"MM", "TIFF"}}};
+
+Result<void> accept_begin(const std::string& path, std::string_view begin) {
+  if (begin.size() >= 8 && png_sig_cmp(reinterpret_cast<png_const_bytep>(begin.data()), 0, 8) == 0) return {};
+  if (begin.empty()) return hal::fail(ErrorCode::bad_format, path, "is an empty file, expected a PNG picture");
+  const auto* kind = std::find_if(other_kinds.begin(), other_kinds.end(),
+                                  [&](const OtherKind& each) { return begin.starts_with(each.begin); });
+  if (kind == other_kinds.end()) return hal::fail(ErrorCode::bad_format, path, "is not a PNG picture");
+  return hal::fail(
+      ErrorCode::unsupported, path,
+      "is a " + std::string(kind->name) +
+          " picture, expected a PNG: convert it first, as ImageMagick's 'convert photo.jpg photo.png' does");
+}
+
 }  // namespace
 
 Result<hal::Image> read_png(const std::string& path) {
   // Incompressible RGBA of 16 bits at the largest size, with room for other chunks.
   constexpr std::uint64_t max_file_bytes = std::uint64_t{1} << 30U;
-  const std::string bytes = TRY(read_whole_file(path, max_file_bytes));
-  if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0) {
-    return hal::fail(ErrorCode::bad_format, path,
-                     bytes.empty() ? "is an empty file, expected a PNG picture" : "is not a PNG picture");
-  }
+  const std::string bytes =
+      TRY(read_whole_file(path, max_file_bytes, [&](std::string_view begin) { return accept_begin(path, begin); }));
   PngReader reader(bytes);
   if (!reader.run(PngReader::read_header)) return damaged(path, reader);
   TRY(check_size(path, reader, bytes.size()));

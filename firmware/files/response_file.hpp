@@ -29,13 +29,15 @@ inline constexpr std::uint64_t default_max_dense_bytes = std::uint64_t{1} << 30U
 /// Reads a Matrix Market file into a response: sparse from "coordinate", dense from "array".
 /// Source: Boisvert, Pozo, Remington, "The Matrix Market Exchange Formats", NISTIR 5935 (1996).
 ///
-/// Accepted: coordinate real / integer / pattern (an entry of a pattern is 1), general / symmetric / skew-symmetric;
-/// array real / integer general. Indices count from 1. Entries come in any order; an element given more than once
-/// is the sum of its entries, as SciPy, Octave and Eigen read it. Explicit zeros stay stored. Empty lines are skipped.
+/// Accepted: coordinate real / integer / unsigned-integer / pattern (an entry of a pattern is 1), array all but
+/// pattern; both general / symmetric / skew-symmetric. Indices count from 1. Entries come in any order; an element
+/// given more than once is the sum of its entries, as SciPy, Octave and Eigen read it. Explicit zeros stay stored.
+/// Empty lines and a byte order mark are skipped.
 ///
 /// Every error names file and line, the value and what was expected: not_found, io; bad_format (banner, size line,
-/// number, fewer or more entries than announced); out_of_range (index outside the matrix, NaN, infinity, overflow,
-/// no entries); unsupported (complex, hermitian, more than 2^24 rows or 2^26 columns).
+/// number, fewer or more entries than announced, a first line of more than 1 KiB); out_of_range (index outside the
+/// matrix, NaN, infinity, overflow, no entries, or so few that nearly every row or column is empty); unsupported
+/// (complex, hermitian, more than 2^24 rows or 2^26 columns).
 [[nodiscard]] hal::Result<recon::Response> read_matrix_market(const std::string& path);
 
 /// Writes "coordinate real general", each value with the fewest digits that give back the same double, atomically.

@@ -65,7 +65,9 @@ TEST_CASE("unknown keys and sections are errors with the nearest name") {
 TEST_CASE("a value of the wrong type is told with what was expected") {
   check_all({
       {"rows = 8\n", "rows = \"eight\"\n", 4, {"rows", "eight", "[eye]", "1", "4096"}, ErrorCode::bad_format},
-      {"rows = 8\n", "rows = 8.0\n", 4, {"rows", "8", "1", "4096"}, ErrorCode::bad_format},
+      {"rows = 8\n", "rows = 8.0\n", 4, {"rows", "8.0", "1", "4096"}, ErrorCode::bad_format},
+      {"rows = 8\n", "rows = 1_0e3 # ten\n", 4, {"rows", "1_0e3"}, ErrorCode::bad_format},
+      {"bits = 16", "bits = 0x40", 15, {"bits", "0x40", "24"}, ErrorCode::out_of_range},
       {"rows = 8\n", "rows = true\n", 4, {"rows", "true"}, ErrorCode::bad_format},
       {"rows = 8\n", "rows = [8]\n", 4, {"rows", "[8]"}, ErrorCode::bad_format},
       {"width_mm = 8.5", "width_mm = \"8.5\"", 11, {"width_mm", "8.5"}, ErrorCode::bad_format},

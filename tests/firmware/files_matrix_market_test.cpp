@@ -110,6 +110,19 @@ TEST_CASE("every accepted kind of Matrix Market file is read") {
       {"symmetric", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 4\n2 1 5\n", 2, 2, {4, 5, 5, 0}},
       {"skew", "%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n2 1 5\n", 2, 2, {0, -5, 5, 0}},
       {"array", "%%MatrixMarket matrix array real general\n2 3\n1\n4\n2\n5\n3\n6\n", 2, 3, {1, 2, 3, 4, 5, 6}},
+      {"unsigned integer", "%%MatrixMarket matrix coordinate unsigned-integer general\n1 2 1\n1 2 7\n", 1, 2, {0, 7}},
+      {"unsigned integer array", "%%MatrixMarket matrix array unsigned-integer general\n1 1\n7\n", 1, 1, {7}},
+      {"symmetric array",
+       "%%MatrixMarket matrix array real symmetric\n3 3\n1\n2\n3\n4\n5\n6\n",
+       3,
+       3,
+       {1, 2, 3, 2, 4, 5, 3, 5, 6}},
+      {"skew array",
+       "%%MatrixMarket matrix array integer skew-symmetric\n3 3\n1\n2\n3\n",
+       3,
+       3,
+       {0, -1, -2, 1, 0, -3, 2, 3, 0}},
+      {"byte order mark", "\xEF\xBB\xBF" + real_general + "1 1 1\n1 1 2\n", 1, 1, {2}},
       {"integer array", "%%MatrixMarket matrix array integer general\n1 1\n-3\n", 1, 1, {-3}},
   };
   for (const Case& c : cases) {
@@ -142,7 +155,7 @@ TEST_CASE("a hostile .mtx is refused with file, line, value and expectation") {
        "%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 1 0\n",
        ErrorCode::unsupported,
        1,
-       {"complex", "real", "integer", "pattern"}},
+       {"complex", "real", "integer", "unsigned-integer", "pattern"}},
       {"hermitian",
        "%%MatrixMarket matrix coordinate real hermitian\n",
        ErrorCode::unsupported,
@@ -153,11 +166,42 @@ TEST_CASE("a hostile .mtx is refused with file, line, value and expectation") {
        ErrorCode::bad_format,
        1,
        {"pattern", "real", "integer"}},
-      {"array symmetric",
-       "%%MatrixMarket matrix array real symmetric\n",
+      {"unsigned skew",
+       "%%MatrixMarket matrix array unsigned-integer skew-symmetric\n",
        ErrorCode::bad_format,
        1,
-       {"symmetric", "general"}},
+       {"skew-symmetric", "general", "symmetric"}},
+      {"symmetric array not square",
+       "%%MatrixMarket matrix array real symmetric\n2 3\n1\n",
+       ErrorCode::bad_format,
+       2,
+       {"symmetric", "2", "3"}},
+      {"skew array of one",
+       "%%MatrixMarket matrix array real skew-symmetric\n1 1\n",
+       ErrorCode::out_of_range,
+       2,
+       {"entries"}},
+      {"symmetric array short",
+       "%%MatrixMarket matrix array real symmetric\n2 2\n1.0\n2.0\n",
+       ErrorCode::bad_format,
+       0,
+       {"2", "3"}},
+      {"negative unsigned",
+       "%%MatrixMarket matrix coordinate unsigned-integer general\n1 1 1\n1 1 -1\n",
+       ErrorCode::out_of_range,
+       3,
+       {"-1", "0"}},
+      {"rows of almost no entries",
+       real_general + "16777216 8 1\n1 1 1\n",
+       ErrorCode::out_of_range,
+       2,
+       {"16777216", "8", "1", "16"}},
+      {"columns of almost no entries",
+       pattern + "1 65600 3\n1 1\n1 2\n1 3\n",
+       ErrorCode::out_of_range,
+       2,
+       {"65600", "3"}},
+      {"no line end", std::string(5000, 'x'), ErrorCode::bad_format, 1, {"1024"}},
       {"only banner", real_general, ErrorCode::bad_format, 2, {"rows", "columns", "entries"}},
       {"short sizes", real_general + "2 2\n1 1 1\n", ErrorCode::bad_format, 2, {"entries", "0", "4611686018427387904"}},
       {"long sizes", real_general + "2 2 1 1\n1 1 1\n", ErrorCode::bad_format, 2, {"1"}},
@@ -243,6 +287,11 @@ TEST_CASE("a hostile .mtx is refused with file, line, value and expectation") {
     test::check_error(read_matrix_market(path), c.code, place, c.named);
   }
   CHECK(read_matrix_market(folder / "missing.mtx").error().code == ErrorCode::not_found);
+}
+
+TEST_CASE("no more than its begin is read of what has no line end") {
+  // It would go on for ever.
+  test::check_error(read_matrix_market("/dev/zero"), ErrorCode::bad_format, "/dev/zero:1", {"1024"});
 }
 
 TEST_CASE("a damaged .mtx is an error or a matrix, never a crash") {

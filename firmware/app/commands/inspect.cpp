@@ -64,10 +64,9 @@ Result<void> inspect_matrix(const InspectRequest& o, const recon::Progress& prog
   return add_response_figures(TRY(read_matrix_market(o.what)), picture_size_from(o.size), progress, figures);
 }
 
-/// Two axes may be a response, samples or a picture; the figures of a response do no harm to the others.
+/// Two axes may as well be samples or a picture: only who names a picture's size means a response.
 bool is_response(const InspectRequest& o, const NpyArray& array) {
-  if (o.as == "response") return true;
-  return o.as == "auto" && array.shape.size() == 2 && !first_non_finite(array.values);
+  return o.as == "response" || (o.as == "auto" && !o.size.empty() && array.shape.size() == 2);
 }
 
 Result<void> inspect_array(const InspectRequest& o, const recon::Progress& progress, Figures& figures) {
@@ -119,8 +118,9 @@ Action declare(OptionList& options) {
       .where(picture_size());
   options
       .add("--as", o->as,
-           "how to take a .npy: array (any), response (two axes, all finite), or auto (default): the figures of a "
-           "response are added where they make sense")
+           "how to take a .npy: array (any), response (two axes, all finite), or auto (default): a response where "
+           "--size "
+           "is given and there are two axes")
       .type("KIND")
       .where(one_of({"auto", "array", "response"}));
   options.json("print one object with every figure");
@@ -133,7 +133,8 @@ std::string footer() {
          "Exit codes: 0 done, 1 failed, 2 wrong usage.\n\n"
          "Examples:\n"
          "  compueye inspect A.mtx --size 16x16\n"
-         "  compueye inspect y.npy --as array\n"
+         "  compueye inspect y.npy\n"
+         "  compueye inspect A.npy --as response\n"
          "  compueye inspect boards/sim-8x8 --json";
 }
 

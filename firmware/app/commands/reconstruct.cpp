@@ -148,7 +148,7 @@ Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& 
     record.solve_ms = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-6;
     TRY(session.check_stop());
     TRY(check_health(record.info, f));
-    TRY(outputs.add(picture));
+    record.clipped_pixels = TRY(outputs.add(picture));
     if (truth != nullptr) record.quality = TRY(truth->compare(f, picture));
     records.push_back(record);
   }

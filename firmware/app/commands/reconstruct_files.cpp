@@ -33,7 +33,8 @@ std::string where(const SampleArray& array, std::int64_t frame, std::int64_t cha
 Result<void> check_channels(const std::string& file, const SampleArray& array, int channels) {
   if (array.channels == channels) return {};
   return fail(ErrorCode::mismatch, file,
-              fmt::format("has {} channels, expected {} as the response has rows", array.channels, channels));
+              fmt::format("has {} channels, expected {} as the response has rows{}", array.channels, channels,
+                          array.frames == channels ? "; it lies the other way round: save y.T" : ""));
 }
 
 Result<void> check_weights(const std::string& file, const SampleArray& weights) {
@@ -51,7 +52,7 @@ Result<void> check_weights(const std::string& file, const SampleArray& weights) 
 }
 
 Result<SampleArray> read_weights(const std::string& file, int channels, std::int64_t frames) {
-  SampleArray weights = TRY(read_samples(file));
+  SampleArray weights = TRY(read_samples(file, channels));
   TRY(check_channels(file, weights, channels));
   if (weights.has_frame_axis && weights.frames != frames) {
     return fail(ErrorCode::mismatch, file,
@@ -136,7 +137,7 @@ std::span<const float> FrameInputs::weights_of(std::int64_t frame) const noexcep
 
 Result<FrameInputs> read_frame_inputs(const recon::Response& response, const std::string& samples_file,
                                       const std::string& weights_file) {
-  const SampleArray samples = TRY(read_samples(samples_file));
+  const SampleArray samples = TRY(read_samples(samples_file, response.rows()));
   TRY(check_channels(samples_file, samples, response.rows()));
   FrameInputs inputs;
   inputs.frames = samples.frames;
@@ -228,10 +229,10 @@ std::string PictureOutputs::png_path(std::int64_t frame) const {
   return path.string();
 }
 
-Result<void> PictureOutputs::add(std::span<const float> picture) {
+Result<std::int64_t> PictureOutputs::add(std::span<const float> picture) {
   const std::int64_t frame = next_++;
   if (npy_) TRY(npy_->write(std::as_bytes(picture)));
-  if (request_.png.empty()) return {};
+  if (request_.png.empty()) return 0;
   hal::Image image(request_.size.rows, request_.size.cols);
   std::copy(picture.begin(), picture.end(), image.pixels.begin());
   const std::string path = png_path(frame);
@@ -239,7 +240,9 @@ Result<void> PictureOutputs::add(std::span<const float> picture) {
   TRY(write_png(path, image));
   session_->guard_part(path);
   written_.push_back(path);
-  return {};
+  // Half a code of 8 bits is lost in rounding anyway.
+  constexpr float unseen = 0.5F / 255.0F;
+  return std::count_if(picture.begin(), picture.end(), [](float v) { return v < -unseen || v > 1.0F + unseen; });
 }
 
 Result<void> PictureOutputs::commit() {

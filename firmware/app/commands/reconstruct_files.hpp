@@ -79,8 +79,8 @@ class PictureOutputs {
   /// Without commit(), PNGs already written are removed.
   ~PictureOutputs();
 
-  /// The next frame.
-  [[nodiscard]] hal::Result<void> add(std::span<const float> picture);
+  /// The next frame. Returns how many of its pixels lie beyond 0..1, so that a PNG shows them as black or white.
+  [[nodiscard]] hal::Result<std::int64_t> add(std::span<const float> picture);
   [[nodiscard]] hal::Result<void> commit();
 
  private:

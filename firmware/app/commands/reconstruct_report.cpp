@@ -99,11 +99,16 @@ void add_quality(std::span<const FrameRecord> frames, Figures& f) {
   f.line("SSIM", "{quality.ssim:.4}" + note);
 }
 
-void add_written(const ReconstructOptions& o, bool many, Figures& f) {
+void add_written(const ReconstructOptions& o, std::span<const FrameRecord> frames, Figures& f) {
   const auto name_or_none = [](const std::string& file) { return file.empty() ? Value() : Value(file); };
-  f.add("written", Figures{{"npy", name_or_none(o.out)}, {"png", name_or_none(o.png)}});
+  std::int64_t clipped = 0;
+  for (const FrameRecord& record : frames) clipped += record.clipped_pixels;
+  f.add("written", Figures{{"npy", name_or_none(o.out)}, {"png", name_or_none(o.png)}, {"clipped_pixels", clipped}});
   if (!o.out.empty()) f.line("written", "{written.npy}");
-  if (!o.png.empty()) f.line("written", many ? "{written.png}, numbered by frame" : "{written.png}");
+  if (o.png.empty()) return;
+  f.line("written",
+         std::string("{written.png}") + (frames.size() > 1 ? ", numbered by frame" : "") +
+             (clipped > 0 ? "; {written.clipped_pixels:,} pixels beyond 0..1 clipped (--out keeps them)" : ""));
 }
 
 void add_problem(const ReconstructOptions& o, std::optional<double> sigma, const recon::Reconstructor& r, Figures& f) {
@@ -155,9 +160,9 @@ Figures figures_of(const ReconstructOptions& o, std::optional<double> sigma, con
         Figures{{"converged", count(frames, recon::Health::converged)},
                 {"budget_used", count(frames, recon::Health::budget_used)},
                 {"invalid", count(frames, recon::Health::invalid)}},
-        "health", "{health.converged} converged, {health.budget_used} used their budget (normal in real time)");
+        "health", "{health.converged} converged, {health.budget_used} used all their iterations, as planned");
   add_quality(frames, f);
-  add_written(o, frames.size() > 1, f);
+  add_written(o, frames, f);
   std::vector<Figures> per_frame;
   for (const FrameRecord& record : frames) per_frame.push_back(frame_figures(record));
   return f.add("per_frame", per_frame);

@@ -14,6 +14,7 @@ namespace compueye::firmware {
 struct FrameRecord {
   recon::FrameInfo info;
   double solve_ms = 0.0;
+  std::int64_t clipped_pixels = 0;        ///< in its PNG
   std::optional<PictureQuality> quality;  ///< with a truth only
 };
 

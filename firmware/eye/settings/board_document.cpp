@@ -105,7 +105,9 @@ hal::Result<void> check_document(const TomlDocument& document, const std::string
   };
   for (const TomlSection& section : document.sections) TRY(known_section(section).map_error(at_line(section.line)));
   for (const TomlEntry& entry : document.entries) {
-    const auto good_value = [&] { return check_value(*find_setting(entry.section, entry.key), entry.value); };
+    const auto good_value = [&] {
+      return check_value(*find_setting(entry.section, entry.key), entry.value, entry.written);
+    };
     TRY(known_key(entry).and_then(good_value).map_error(at_line(entry.line)));
   }
   return nothing_missing(document, file);

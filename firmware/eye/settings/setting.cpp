@@ -50,73 +50,81 @@ bool has_word(std::string_view words, std::string_view word) {
   return false;
 }
 
-tl::unexpected<hal::Error> bad_value(const Setting& setting, const SettingValue& value, ErrorCode code,
+/// A value to check, and how the file spells it; empty: not known.
+struct Given {
+  const SettingValue& value;
+  std::string_view written;
+
+  [[nodiscard]] std::string text() const { return written.empty() ? quoted(value) : excerpt(written); }
+};
+
+tl::unexpected<hal::Error> bad_value(const Setting& setting, const Given& given, ErrorCode code,
                                      std::string_view remark = {}) {
   return hal::fail(code, {},
-                   fmt::format("{} = {} in [{}], expected {}{}", setting.key, quoted(value), setting.section,
+                   fmt::format("{} = {} in [{}], expected {}{}", setting.key, given.text(), setting.section,
                                setting.expectation(), remark));
 }
 
-hal::Result<void> check_text(const Setting& setting, const SettingValue& value) {
+hal::Result<void> check_text(const Setting& setting, const Given& given) {
   constexpr std::size_t longest_name = 64, longest_text = 1000;
-  const auto* text = std::get_if<std::string>(&value);
-  if (text == nullptr) return bad_value(setting, value, ErrorCode::bad_format);
+  const auto* text = std::get_if<std::string>(&given.value);
+  if (text == nullptr) return bad_value(setting, given, ErrorCode::bad_format);
   if (setting.type == SettingType::choice) {
     if (std::find(setting.choices.begin(), setting.choices.end(), *text) != setting.choices.end()) return {};
     const auto near = nearest_name(*text, setting.choices);
-    return bad_value(setting, value, ErrorCode::not_found, near ? fmt::format("; did you mean \"{}\"?", *near) : "");
+    return bad_value(setting, given, ErrorCode::not_found, near ? fmt::format("; did you mean \"{}\"?", *near) : "");
   }
   if (setting.type == SettingType::text) {
     const bool one_line = visible_text(*text) == *text;
     if (one_line && text->size() <= longest_text) return {};
-    return bad_value(setting, value, ErrorCode::out_of_range);
+    return bad_value(setting, given, ErrorCode::out_of_range);
   }
   const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); };
   const bool good =
       !text->empty() && text->size() <= longest_name && plain(text->front()) &&
       std::all_of(text->begin(), text->end(), [&](char c) { return plain(c) || c == '.' || c == '_' || c == '-'; });
   if (good) return {};
-  return bad_value(setting, value, ErrorCode::out_of_range);
+  return bad_value(setting, given, ErrorCode::out_of_range);
 }
 
-hal::Result<void> check_number(const Setting& setting, const SettingValue& value) {
-  const auto* whole = std::get_if<std::int64_t>(&value);
-  const auto* real = std::get_if<double>(&value);
+hal::Result<void> check_number(const Setting& setting, const Given& given) {
+  const auto* whole = std::get_if<std::int64_t>(&given.value);
+  const auto* real = std::get_if<double>(&given.value);
   if (whole == nullptr && (real == nullptr || setting.type == SettingType::whole)) {
-    return bad_value(setting, value, ErrorCode::bad_format);
+    return bad_value(setting, given, ErrorCode::bad_format);
   }
   const double number = whole != nullptr ? static_cast<double>(*whole) : *real;
-  if (!setting.range.holds(number)) return bad_value(setting, value, ErrorCode::out_of_range);
+  if (!setting.range.holds(number)) return bad_value(setting, given, ErrorCode::out_of_range);
   return {};
 }
 
-hal::Result<void> check_whole_list(const Setting& setting, const SettingValue& value) {
-  const auto* list = std::get_if<std::vector<std::int64_t>>(&value);
-  if (list == nullptr) return bad_value(setting, value, ErrorCode::bad_format);
+hal::Result<void> check_whole_list(const Setting& setting, const Given& given) {
+  const auto* list = std::get_if<std::vector<std::int64_t>>(&given.value);
+  if (list == nullptr) return bad_value(setting, given, ErrorCode::bad_format);
   std::set<std::int64_t> seen;
   for (const std::int64_t item : *list) {
     if (!setting.range.holds(static_cast<double>(item))) {
-      return bad_value(setting, value, ErrorCode::out_of_range, fmt::format("; {} is not", item));
+      return bad_value(setting, given, ErrorCode::out_of_range, fmt::format("; {} is not", item));
     }
     if (!seen.insert(item).second) {
-      return bad_value(setting, value, ErrorCode::out_of_range, fmt::format("; {} is there twice", item));
+      return bad_value(setting, given, ErrorCode::out_of_range, fmt::format("; {} is there twice", item));
     }
   }
   return {};
 }
 
-hal::Result<void> check_real_pair(const Setting& setting, const SettingValue& value) {
+hal::Result<void> check_real_pair(const Setting& setting, const Given& given) {
   std::vector<double> pair;
-  if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&value)) {
+  if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&given.value)) {
     pair.assign(whole->begin(), whole->end());
-  } else if (const auto* real = std::get_if<std::vector<double>>(&value)) {
+  } else if (const auto* real = std::get_if<std::vector<double>>(&given.value)) {
     pair = *real;
   } else {
-    return bad_value(setting, value, ErrorCode::bad_format);
+    return bad_value(setting, given, ErrorCode::bad_format);
   }
-  if (pair.size() != 2) return bad_value(setting, value, ErrorCode::bad_format);
+  if (pair.size() != 2) return bad_value(setting, given, ErrorCode::bad_format);
   if (setting.range.holds(pair[0]) && setting.range.holds(pair[1]) && pair[0] < pair[1]) return {};
-  return bad_value(setting, value, ErrorCode::out_of_range);
+  return bad_value(setting, given, ErrorCode::out_of_range);
 }
 
 /// Limits so far out that only an absurd value meets them are named to who gives one.
@@ -231,19 +239,20 @@ std::vector<const Setting*> settings_for(std::string_view command) {
   return taken;
 }
 
-hal::Result<void> check_value(const Setting& setting, const SettingValue& value) {
+hal::Result<void> check_value(const Setting& setting, const SettingValue& value, std::string_view written) {
+  const Given given{value, written};
   switch (setting.type) {
     case SettingType::identifier:
     case SettingType::text:
     case SettingType::choice:
-      return check_text(setting, value);
+      return check_text(setting, given);
     case SettingType::whole:
     case SettingType::real:
-      return check_number(setting, value);
+      return check_number(setting, given);
     case SettingType::whole_list:
-      return check_whole_list(setting, value);
+      return check_whole_list(setting, given);
     case SettingType::real_pair:
-      return check_real_pair(setting, value);
+      return check_real_pair(setting, given);
   }
   return {};
 }

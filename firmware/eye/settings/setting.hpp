@@ -91,8 +91,10 @@ struct Setting {
 /// Those whose option the command takes.
 [[nodiscard]] std::vector<const Setting*> settings_for(std::string_view command);
 
-/// One value against its row. Errors have an empty place: bad_format (type), out_of_range, not_found (choice).
-[[nodiscard]] hal::Result<void> check_value(const Setting& setting, const SettingValue& value);
+/// One value against its row. Errors have an empty place and quote the value as `written`, where that is known:
+/// bad_format (type), out_of_range, not_found (choice).
+[[nodiscard]] hal::Result<void> check_value(const Setting& setting, const SettingValue& value,
+                                            std::string_view written = {});
 
 /// What a person typed after the option. Error usage at `place`: "is 'x', expected ...".
 [[nodiscard]] hal::Result<SettingValue> value_from(const Setting& setting, std::string_view text,

@@ -72,6 +72,17 @@ SettingValue value_of(const toml::node& node) {
   return ForeignValue{std::string(kind_of(node.type()))};
 }
 
+/// Columns count characters, so that a line with letters beyond ASCII gives nothing.
+std::string written_number(std::string_view text, const toml::node& node) {
+  const auto [begin, end] = std::pair(node.source().begin, node.source().end);
+  if (!node.is_number() || begin.line != end.line) return {};
+  for (toml::source_index line = 1; line < begin.line; ++line) text.remove_prefix(text.find('\n') + 1);
+  text = text.substr(0, text.find('\n'));
+  const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= 0; });
+  if (!plain || begin.column < 1 || end.column <= begin.column || end.column - 1 > text.size()) return {};
+  return std::string(text.substr(begin.column - 1, end.column - begin.column));
+}
+
 /// toml++ tears its tables down by recursion: a dotted key of a hundred thousand parts overflows the stack.
 hal::Result<void> refuse_deep_nesting(std::string_view text, const std::string& file) {
   constexpr int most_dots = 64;
@@ -118,12 +129,13 @@ hal::Result<TomlDocument> parse_toml(std::string_view text, const std::string& f
     const std::string section(name.str());
     const toml::table* table = node.as_table();
     if (table == nullptr) {
-      document.entries.push_back({{}, section, value_of(node), line_of(name.source())});
+      document.entries.push_back({{}, section, value_of(node), line_of(name.source()), {}});
       continue;
     }
     document.sections.push_back({section, line_of(name.source())});
     for (const auto& [key, value] : *table) {
-      document.entries.push_back({section, std::string(key.str()), value_of(value), line_of(key.source())});
+      document.entries.push_back(
+          {section, std::string(key.str()), value_of(value), line_of(key.source()), written_number(text, value)});
     }
   }
   const auto by_line = [](const auto& a, const auto& b) { return a.line < b.line; };

@@ -20,6 +20,7 @@ struct TomlEntry {
   std::string key;
   SettingValue value;
   int line = 0;
+  std::string written;  ///< a number as the file spells it, "8.0"; empty: anything else
 };
 
 /// A TOML file of one level of sections, flat and in the order of its lines.

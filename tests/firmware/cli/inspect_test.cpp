@@ -69,8 +69,10 @@ TEST_CASE("inspect tells the range of an array and its non-finite elements") {
   CHECK(json["max"] == 4.0);
   CHECK(json["mean"] == 1.5);
   CHECK(json["non_finite"] == 2);
-  put_npy(folder, "y.npy", {2, 2}, {1, 2, nan, 4});
+  // (frames, M): samples, not a response.
+  put_npy(folder, "y.npy", {2, 2}, {1, 2, 3, 4});
   CHECK(json_from("inspect y.npy --json", folder.path())["kind"] == "array");
+  CHECK(json_from("inspect y.npy --as response --json", folder.path())["kind"] == "response");
   put_npy(folder, "y.npy", {2, 2}, {nan, nan, nan, nan});
   CHECK(json_from("inspect y.npy --json", folder.path())["non_finite"] == 4);
   put_npy(folder, "y.npy", {2, 2}, {0, 0, 0, 0});

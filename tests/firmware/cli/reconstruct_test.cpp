@@ -75,7 +75,7 @@ TEST_CASE("reconstructing twice gives identical bytes") {
 TEST_CASE("frames with weights of their own equal single runs with these weights") {
   const TemporaryFolder folder;
   put_frames(folder, 3);
-  const auto samples = firmware::read_samples(folder / "y.npy");
+  const auto samples = firmware::read_samples(folder / "y.npy", 64);
   REQUIRE(samples.has_value());
   std::vector<double> weights(3 * 64, 1.0);
   for (std::size_t m = 0; m < 64; ++m) weights[64 + m] = m % 9 == 0 ? 0.0 : 1.0;
@@ -234,7 +234,7 @@ TEST_CASE("pictures are written in the shape of the samples, in 8 bits as PNG") 
   for (std::size_t i = 0; i < png->pixels.size(); ++i)
     CHECK(std::abs(png->pixels[i] - framed->values[i]) <= 0.5001 / 255);
 
-  const auto y = firmware::read_samples(folder / "y.npy");
+  const auto y = firmware::read_samples(folder / "y.npy", 64);
   put_npy(folder, "y.npy", {64}, y->values);
   CHECK(run_compueye(command, folder.path()).exit_code == 0);
   const auto flat = firmware::read_npy(folder / "x.npy", 1, 3);

@@ -20,7 +20,7 @@ firmware::SampleArray simulated(const CopiedBoard& board, std::vector<std::strin
   more.insert(more.begin(), {"simulate", "--board", board.path().string(), "--out", file.string()});
   const Ended ended = compueye::test::compueye(more);
   REQUIRE_MESSAGE(ended.exit_code == 0, ended.err);
-  auto samples = firmware::read_samples(file);
+  auto samples = firmware::read_samples(file, 64);
   REQUIRE(samples.has_value());
   return *samples;
 }
@@ -70,7 +70,7 @@ TEST_CASE("channels that tell nothing are NaN with weight zero") {
   board.change("dead = []", "dead = [7]");
   const auto weights_file = board.outside("w.npy");
   const auto samples = simulated(board, {"--weights", weights_file.string()});
-  const auto weights = firmware::read_samples(weights_file);
+  const auto weights = firmware::read_samples(weights_file, 64);
   REQUIRE(weights.has_value());
   for (std::size_t m = 0; m < samples.values.size(); ++m) {
     CHECK(std::isnan(samples.values[m]) == (m == 7));
