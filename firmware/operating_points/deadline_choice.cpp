@@ -88,10 +88,12 @@ hal::Result<SolveTime> measure_solve_time(const TimedSolve& solve_ns, int most_i
 DeadlineChoice choose_iterations(double deadline_ms, double period_ms, const SolveTime& time, int most_iterations) {
   const auto solve_ms = [&](int iterations) { return time.of(iterations) / ns_per_ms; };
   const auto fits = [&](int iterations) {
-    return predicted_age_ms(solve_ms(iterations), period_ms) <= deadline_share * deadline_ms;
+    return solve_ms(iterations) <= period_ms &&
+           predicted_age_ms(solve_ms(iterations), period_ms) <= deadline_share * deadline_ms;
   };
+  const int least = std::min(least_iterations, most_iterations);
   int iterations = most_iterations;
-  while (iterations > 1 && !fits(iterations)) --iterations;
+  while (iterations > least && !fits(iterations)) --iterations;
   DeadlineChoice choice;
   choice.deadline_ms = deadline_ms;
   choice.most_iterations = most_iterations;
@@ -99,7 +101,8 @@ DeadlineChoice choose_iterations(double deadline_ms, double period_ms, const Sol
   choice.fits = fits(iterations);
   choice.solve_ms = solve_ms(iterations);
   choice.age_ms = predicted_age_ms(choice.solve_ms, period_ms);
-  choice.least_ms = predicted_age_ms(solve_ms(1), period_ms) / deadline_share;
+  choice.by_rate = choice.fits && iterations < most_iterations && solve_ms(iterations + 1) > period_ms;
+  choice.least_ms = predicted_age_ms(solve_ms(least), period_ms) / deadline_share;
   choice.for_most_ms = predicted_age_ms(solve_ms(most_iterations), period_ms) / deadline_share;
   return choice;
 }
@@ -108,19 +111,22 @@ std::string DeadlineChoice::sentence() const {
   const auto ms = [](double value) { return significant(value, 3) + " ms"; };
   if (!fits) {
     return fmt::format(
-        "the deadline of {} cannot be kept: with a single iteration a picture is already about {} old (exposure and {} "
-        "of solving); running with 1 iteration all the same, so expect poor and late pictures; {} is the shortest "
-        "deadline this machine can promise for this board, {} the shortest for all {} iterations",
-        ms(deadline_ms), ms(age_ms), ms(solve_ms), ms(least_ms), ms(for_most_ms), most_iterations);
+        "the deadline of {} cannot be kept at this frame rate: with {} iterations a picture is already about {} old "
+        "(exposure and {} of solving); running with them all the same, since fewer can be worse than the conventional "
+        "eye, so expect poor and late pictures; {} is the shortest deadline this machine can promise for this board, "
+        "{} "
+        "the shortest for all {} iterations",
+        ms(deadline_ms), iterations, ms(age_ms), ms(solve_ms), ms(least_ms), ms(for_most_ms), most_iterations);
   }
   if (iterations == most_iterations) {
     return fmt::format("the deadline of {} leaves room for all {} iterations: {} of solving, pictures about {} old",
                        ms(deadline_ms), iterations, ms(solve_ms), ms(age_ms));
   }
   return fmt::format(
-      "the deadline of {} leaves room for {} of {} iterations: {} of solving, pictures about {} old; all {} need a "
-      "deadline of {}",
-      ms(deadline_ms), iterations, most_iterations, ms(solve_ms), ms(age_ms), most_iterations, ms(for_most_ms));
+      "the {} leaves room for {} of {} iterations: {} of solving, pictures about {} old; all {} need {}a deadline of "
+      "{}",
+      by_rate ? "frame rate" : "deadline of " + ms(deadline_ms), iterations, most_iterations, ms(solve_ms), ms(age_ms),
+      most_iterations, by_rate ? "slower frames and " : "", ms(for_most_ms));
 }
 
 hal::Result<TrialFrame> take_trial_frame(const Board& board, const CorrectionSettings& settings,

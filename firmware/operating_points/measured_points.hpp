@@ -83,6 +83,10 @@ struct MeasuredPoint {
   std::uint64_t workspace_bytes = 0;
 };
 
+/// Timed frames that had a processor for less of their time were measured on a machine that was busy otherwise: their
+/// times are good for nothing but the order of things.
+inline constexpr double trusted_processor_share = 0.95;
+
 /// Every point of a board on this machine.
 struct Sweep {
   std::string board;

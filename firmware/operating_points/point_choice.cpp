@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "firmware/operating_points/deadline_choice.hpp"
 #include "firmware/text/number_text.hpp"
@@ -43,6 +44,20 @@ bool frames_look_alike(const MeasuredPoint& a, const MeasuredPoint& b) {
          a.op == b.op && a.iterations == b.iterations;
 }
 
+double nmse_of(const MeasuredPoint& point, std::size_t level) {
+  return point.levels[level].quality.mean.nmse;
+}
+
+/// Efficient points that are worth a picture, by cost: better than the same eye with narrow ommatidia shows unsolved.
+std::vector<std::size_t> worth_a_picture(const Sweep& sweep, std::size_t level) {
+  std::vector<std::size_t> front = efficient_points(sweep, level, &MeasuredPoint::p999_ms);
+  if (front.empty()) front.push_back(0);  // nothing but still scenes was measured
+  if (level >= sweep.conventional.size()) return front;
+  const double worst = sweep.conventional[level].mean.nmse;
+  std::erase_if(front, [&](std::size_t i) { return !(nmse_of(sweep.points[i], level) < worst); });
+  return front;
+}
+
 }  // namespace
 
 PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, double period_ms) {
@@ -50,13 +65,17 @@ PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, 
   choice.deadline_ms = deadline_ms;
   choice.level = nearest_level(sweep, sigma);
   const auto cost = [&](std::size_t i) { return sweep.points[i].p999_ms; };
-  std::vector<std::size_t> front = efficient_points(sweep, choice.level, &MeasuredPoint::p999_ms);
-  if (front.empty()) front.push_back(0);  // nothing but still scenes was measured
+  std::vector<std::size_t> front = worth_a_picture(sweep, choice.level);
+  if (front.empty()) return choice;
+  const std::size_t fastest = front.front();
+  std::erase_if(front, [&](std::size_t i) { return sweep.points[i].median_ms > period_ms; });
+  choice.keeps_up = !front.empty();
+  if (front.empty()) front.push_back(fastest);
   std::size_t chosen = 0;
   for (std::size_t f = 0; f < front.size(); ++f) {
-    if (predicted_age_ms(cost(front[f]), period_ms) > deadline_share * deadline_ms) continue;
-    chosen = f;
-    choice.fits = true;
+    const bool fits = predicted_age_ms(cost(front[f]), period_ms) <= deadline_share * deadline_ms;
+    choice.fits = choice.fits || (fits && choice.keeps_up);
+    if (fits || (!choice.fits && cost(front[f]) <= nearly_as_fast * cost(front.front()))) chosen = f;
   }
   choice.ladder.push_back(front[chosen]);
   choice.age_ms = predicted_age_ms(cost(front[chosen]), period_ms);
@@ -80,18 +99,29 @@ std::string point_text(const MeasuredPoint& point) {
 }
 
 std::string sentence(const PointChoice& choice, const Sweep& sweep) {
+  if (choice.ladder.empty()) {
+    return fmt::format("none of the {} stored points is better than the conventional eye", sweep.points.size());
+  }
   const auto ms = [](double value) { return significant(value, 3) + " ms"; };
   const MeasuredPoint& chosen = sweep.points[choice.ladder.front()];
   const std::string figures = fmt::format(
       "{}: NMSE {} on the evaluation scenes at sigma {}, 99.9 % of frames solved within {}, pictures then {} old",
-      point_text(chosen), significant(chosen.levels[choice.level].quality.mean.nmse, 3),
+      point_text(chosen), significant(nmse_of(chosen, choice.level), 3),
       significant(sweep.levels[choice.level].sigma, 3), ms(chosen.p999_ms), ms(choice.age_ms));
   if (!choice.fits) {
-    return fmt::format("the deadline of {} cannot be kept by any of the {} stored points; running with the fastest, {}",
-                       ms(choice.deadline_ms), sweep.points.size(), figures);
+    return fmt::format(
+        "the deadline of {} cannot be kept{} by any of the {} stored points that is better than the conventional "
+        "eye{}; "
+        "running with the most accurate of the fastest, {}",
+        ms(choice.deadline_ms), choice.keeps_up ? "" : ", nor the rate of the frames,", sweep.points.size(),
+        choice.level < sweep.conventional.size()
+            ? fmt::format(" (NMSE {})", significant(sweep.conventional[choice.level].mean.nmse, 3))
+            : "",
+        figures);
   }
   std::string text = fmt::format(
-      "the deadline of {} is met by {}; no more accurate one of the {} stored points leaves a fifth of it as head-room",
+      "the deadline of {} is met by {}; no more accurate one of the {} stored points leaves a fifth of it as head-room "
+      "and keeps up with the frames",
       ms(choice.deadline_ms), figures, sweep.points.size());
   if (choice.ladder.size() == 1) return text + "; there is no faster one to step down to";
   text += "; steps down to";

@@ -265,6 +265,12 @@ Result<void> check_fits(const std::string& path, const Sweep& sweep, const Point
         fmt::format("was measured with the constraint {} from {} to {}, and the board now has {} from {} to {}",
                     recon::name(sweep.constraint), sweep.lo, sweep.hi, recon::name(key.constraint), key.lo, key.hi));
   }
+  if (!(sweep.processor_share >= trusted_processor_share)) {
+    return stale(
+        fmt::format("was measured while the machine was busy otherwise (processor_share {:.2f}, expected at least {}), "
+                    "so its times are not trusted; measure again when it is idle",
+                    sweep.processor_share, trusted_processor_share));
+  }
   return {};
 }
 

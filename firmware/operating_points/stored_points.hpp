@@ -29,8 +29,9 @@ struct PointsKey {
 /// version before them. Errors: those of AtomicFile.
 [[nodiscard]] hal::Result<void> store_points(const std::string& folder, const Sweep& sweep);
 
-/// Errors: not_found (none stored), stale (another response, machine, build or constraint: the sentence says which),
-/// bad_format (a member that is missing, of another type, or has a name that this program does not know), io.
+/// Errors: not_found (none stored), stale (another response, machine, build or constraint, or a machine that was busy:
+/// the sentence says which), bad_format (a member that is missing, of another type, or has a name that this program
+/// does not know), io.
 [[nodiscard]] hal::Result<Sweep> load_points(const std::string& folder, const PointsKey& key);
 
 }  // namespace compueye::firmware

@@ -160,7 +160,6 @@ class Sweeper {
 
   /// Frame times of a machine that was busy otherwise are not this board's.
   void note_when_busy() {
-    constexpr double enough = 0.95;
     double wall_ns = 0.0, cpu_ns = 0.0;
     for (const FrameTimes& times : times_) {
       wall_ns += static_cast<double>(times.total_ns());
@@ -168,12 +167,13 @@ class Sweeper {
       cpu_ns += static_cast<double>(std::min(times.total_cpu_ns(), times.total_ns()));
     }
     sweep_.processor_share = wall_ns > 0.0 ? cpu_ns / wall_ns : 1.0;
-    if (sweep_.processor_share >= enough) return;
-    sweep_.notes.push_back(
-        fmt::format("the machine was busy otherwise: the timed frames had a processor for only {:.0f} % of their time, "
-                    "so times are "
-                    "too long and percentiles are those of the disturbance; measure again when it is idle",
-                    100.0 * sweep_.processor_share));
+    if (sweep_.processor_share >= trusted_processor_share) return;
+    sweep_.notes.push_back(fmt::format(
+        "the machine was busy otherwise: the timed frames had a processor for only {:.0f} % of their time, "
+        "so times are "
+        "too long and percentiles are those of the disturbance; run --deadline does not trust them, measure "
+        "again when it is idle",
+        100.0 * sweep_.processor_share));
   }
 
   /// Its share of the time that is left.

@@ -133,17 +133,21 @@ Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
   const auto given = [this](std::string_view option) { return options_.overrides.has(option); };
   if (options_.deadline_ms && !given("--iterations") && !given("--threads") && !given("--lambda")) {
     auto points = load_points(board_.cache(), points_key(board_, living.response));
+    std::string why = points ? std::string() : points.error().text();
     if (points) {
       const PointChoice choice = choose_points(*points, board_.noise_sigma(), *options_.deadline_ms, period_ms());
-      ladder_ = TRY(make_ladder(board_, living, *points, choice, board_.cache(), ask));
-      report_.ladder = LadderRun{std::move(*points), choice, {}, 0, 0};
-      choice_notes_.push_back(report_.ladder->sentence());
-      return {};
+      if (!choice.ladder.empty()) {
+        ladder_ = TRY(make_ladder(board_, living, *points, choice, board_.cache(), ask));
+        report_.ladder = LadderRun{std::move(*points), choice, {}, 0, 0};
+        choice_notes_.push_back(report_.ladder->sentence());
+        return {};
+      }
+      why = sentence(choice, *points);
     }
     choice_notes_.push_back(
         fmt::format("no stored points to choose from, so iterations are fitted by trial; `compueye pareto --board {}` "
                     "measures them: {}",
-                    options_.board, points.error().text()));
+                    options_.board, why));
   }
   ladder_.eyes.push_back(TRY(ReadyEye::make(board_, living, board_.cache(), ask)));
   return {};

@@ -61,7 +61,8 @@ void add_solver_options(OptionList& options, RunOptions& o) {
               "ms from the start of exposure to the published picture: the most accurate point that `compueye "
               "pareto` has stored and that leaves a fifth of it as head-room, with faster ones to step down to "
               "while pictures are late; without stored points as many of the board's iterations as fit, by "
-              "timing real solves first. Late pictures are published and counted");
+              "timing real solves first. No point is chosen that is slower than frames come, or no better than the "
+              "conventional eye. Late pictures are published and counted");
   options.settings("run", o.overrides);
   options.at("--sigma").excludes("--lambda");
 }

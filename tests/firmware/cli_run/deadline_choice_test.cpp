@@ -14,30 +14,39 @@ constexpr SolveTime time_of_machine{2e6, 1e6};  // 2 ms and 1 ms an iteration
 }  // namespace
 
 TEST_CASE("as many iterations as the deadline leaves room for, with head-room, and not one more") {
-  for (const double deadline_ms : {20.0, 33.3, 50.0, 77.0, 100.0, 140.0}) {
-    const DeadlineChoice choice = choose_iterations(deadline_ms, 10.0, time_of_machine, 60);
+  for (const double deadline_ms : {88.0, 100.0, 120.0, 140.0, 155.0}) {
+    const DeadlineChoice choice = choose_iterations(deadline_ms, 62.0, time_of_machine, 60);
     CAPTURE(deadline_ms);
     REQUIRE(choice.fits);
     CHECK(choice.age_ms <= deadline_share * deadline_ms);
     if (choice.iterations == 60) continue;
-    const DeadlineChoice with_one_more = choose_iterations(1e9, 10.0, time_of_machine, choice.iterations + 1);
+    const DeadlineChoice with_one_more = choose_iterations(1e9, 62.0, time_of_machine, choice.iterations + 1);
     CHECK(with_one_more.age_ms > deadline_share * deadline_ms);
   }
 }
 
 TEST_CASE("the deadlines it names are the ones that it keeps") {
-  const DeadlineChoice choice = choose_iterations(30.0, 10.0, time_of_machine, 60);
-  CHECK(choose_iterations(choice.for_most_ms * 1.0001, 10.0, time_of_machine, 60).iterations == 60);
-  CHECK(choose_iterations(choice.for_most_ms * 0.9999, 10.0, time_of_machine, 60).iterations < 60);
-  CHECK(choose_iterations(choice.least_ms * 1.0001, 10.0, time_of_machine, 60).fits);
-  CHECK_FALSE(choose_iterations(choice.least_ms * 0.9999, 10.0, time_of_machine, 60).fits);
+  const DeadlineChoice choice = choose_iterations(90.0, 62.0, time_of_machine, 60);
+  CHECK(choose_iterations(choice.for_most_ms * 1.0001, 62.0, time_of_machine, 60).iterations == 60);
+  CHECK(choose_iterations(choice.for_most_ms * 0.9999, 62.0, time_of_machine, 60).iterations < 60);
+  CHECK(choose_iterations(choice.least_ms * 1.0001, 62.0, time_of_machine, 60).fits);
+  CHECK_FALSE(choose_iterations(choice.least_ms * 0.9999, 62.0, time_of_machine, 60).fits);
 }
 
-TEST_CASE("a deadline that one exposure passes falls back to one iteration and says so") {
+TEST_CASE("a deadline that one exposure passes gets the fewest iterations worth a picture and says so") {
   const DeadlineChoice choice = choose_iterations(5.0, 10.0, time_of_machine, 60);
   CHECK_FALSE(choice.fits);
-  CHECK(choice.iterations == 1);
-  for (const char* value : {"5.00", "1", "60"}) CHECK(test::names(choice.sentence(), value));
+  CHECK(choice.iterations == least_iterations);
+  for (const char* value : {"5.00", "3", "60"}) CHECK(test::names(choice.sentence(), value));
+  CHECK(choose_iterations(5.0, 10.0, time_of_machine, 2).iterations == 2);
+}
+
+TEST_CASE("no more iterations than keep up with the frames, whatever the deadline") {
+  const DeadlineChoice choice = choose_iterations(1000.0, 10.0, time_of_machine, 60);
+  CHECK(choice.fits);
+  CHECK(choice.by_rate);
+  CHECK(choice.iterations == 8);
+  CHECK_FALSE(choose_iterations(20.0, 10.0, time_of_machine, 60).by_rate);
 }
 
 TEST_CASE("the time of a solve is found as a line in the number of iterations") {

@@ -12,6 +12,7 @@ using Json = nlohmann::json;
 TEST_CASE("a deadline takes the most accurate stored point that leaves head-room, and says so") {
   const CopiedBoard board;
   const Json curves = pareto_json(board, short_sweep());
+  set_processor_share(board, 1.0);
   const Json json = board.run_json({"--deadline", "10000", "--frames", "8"});
   const Json& deadline = json["deadline"];
   CHECK(deadline["chosen_by"] == "stored points");
@@ -33,6 +34,7 @@ TEST_CASE("a deadline takes the most accurate stored point that leaves head-room
 TEST_CASE("a deadline shorter than an exposure is said to be out of reach, and steps down as far as it goes") {
   const CopiedBoard board;
   static_cast<void>(pareto_json(board, short_sweep()));
+  set_processor_share(board, 1.0);
   const Ended ended = board.run({"--deadline", "1", "--frames", "30", "--no-show"});
   CHECK(ended.exit_code == 0);
   CHECK(names(ended.out, "1.00"));
@@ -49,6 +51,10 @@ TEST_CASE("without stored points that fit a deadline is fitted by trial, and how
   const Json moved = board.run_json({"--deadline", "10000", "--frames", "2", "--distance", "31"});
   CHECK(moved["deadline"]["chosen_by"] == "trial");
   CHECK(has_note(moved, "another response"));
+  set_processor_share(board, 0.64);
+  const Json disturbed = board.run_json({"--deadline", "10000", "--frames", "2"});
+  CHECK(disturbed["deadline"]["chosen_by"] == "trial");
+  CHECK(has_note(disturbed, "processor_share 0.64"));
   const Json by_hand = board.run_json({"--deadline", "10000", "--frames", "2", "--iterations", "9"});
   CHECK(by_hand["deadline"]["chosen_by"] == "trial");
   CHECK(by_hand["deadline"]["iterations"] == 9);

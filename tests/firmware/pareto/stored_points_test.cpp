@@ -61,6 +61,18 @@ TEST_CASE("points of another machine, build, response or constraint are stale, a
   refused([](PointsKey& k) { k.hi = 2.0; }, {"2"});
 }
 
+TEST_CASE("points that a busy machine measured are not trusted, and the sentence says how busy it was") {
+  const TemporaryFolder folder;
+  Sweep sweep = two_points();
+  sweep.processor_share = 0.64;
+  REQUIRE(store_points(folder.path(), sweep).has_value());
+  compueye::test::check_error(load_points(folder.path(), key_of(sweep)), ErrorCode::stale, points_path(folder.path()),
+                              {"0.64", "0.95"});
+  sweep.processor_share = trusted_processor_share;
+  REQUIRE(store_points(folder.path(), sweep).has_value());
+  CHECK(load_points(folder.path(), key_of(sweep)).has_value());
+}
+
 TEST_CASE("no points are no points") {
   const TemporaryFolder folder;
   const auto loaded = load_points(folder.path(), key_of(two_points()));
