@@ -27,6 +27,9 @@ struct SourceUnderTest {
   /// The clock to test on; empty: virtual time from 0.
   std::function<std::unique_ptr<Clock>()> make_clock;
 
+  /// How long a frame that has to come is waited for, besides its own time.
+  std::int64_t patience_ns = 2'000'000'000;
+
   /// Frames come by time: a deadline before the next one is complete times out. False for sources that always have
   /// their next frame at hand (a recording replayed without pauses), and on a real clock, where the test itself may be
   /// late.
@@ -80,7 +83,7 @@ class ContractTest {
 
   /// One frame, waited for patiently, against everything that holds for each frame.
   std::optional<SampleBlock> next() {
-    const auto block = source_->read(clock_->now_ns() + 20 * period_ns() + 2'000'000'000);
+    const auto block = source_->read(clock_->now_ns() + 20 * period_ns() + test_.patience_ns);
     if (!block) {
       expect(false, "no frame came: " + block.error().text());
       return std::nullopt;
@@ -305,7 +308,7 @@ class ContractTest {
     test_.disconnect(*source_);
     bool gone = false;
     for (int i = 0; i < soon && !gone; ++i) {
-      const auto block = source_->read(clock_->now_ns() + 20 * period_ns());
+      const auto block = source_->read(clock_->now_ns() + 20 * period_ns() + test_.patience_ns);
       gone = !block && block.error().code == ErrorCode::disconnected;
       if (gone) expect(!block.error().sentence.empty(), "nothing tells the user that the device went away");
     }

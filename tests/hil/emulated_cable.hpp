@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -13,19 +14,28 @@
 
 namespace compueye::hil {
 
-/// The emulated eye in real time, for the threads of a test and of the operating system's side.
+/// The emulated eye for the threads of a test and of the operating system's side. The device's time goes with real
+/// time, but only as fast as it is looked at: a machine too busy to run the host slows the device down as well, instead
+/// of filling its memory meanwhile.
 class EmulatedCable {
  public:
   explicit EmulatedCable(const protocol::EmulatorSettings& settings)
-      : device_(protocol::DeviceEmulator::create(settings, protocol::tests::shown(settings.descriptor.bits),
-                                                 clock_.now_ns())
+      : device_(protocol::DeviceEmulator::create(settings, protocol::tests::shown(settings.descriptor.bits), now_ns_)
                     .value()) {}
 
   /// Calls use(device, now_ns) alone.
   template <class Use>
   auto with(Use&& use) {
     const std::lock_guard lock(mutex_);
-    return use(device_, clock_.now_ns());
+    const std::int64_t real_ns = clock_.now_ns();
+    now_ns_ += std::min(real_ns - looked_ns_, most_between_looks_ns);
+    looked_ns_ = real_ns;
+    return use(device_, now_ns_);
+  }
+  /// So much of the device's time passes now, while nobody reads.
+  void pass(std::int64_t device_ns) {
+    const std::lock_guard lock(mutex_);
+    now_ns_ += device_ns;
   }
   void inject(protocol::EmulatorFault fault) {
     with([&](protocol::DeviceEmulator& device, std::int64_t now_ns) {
@@ -50,8 +60,12 @@ class EmulatedCable {
   }
 
  private:
+  static constexpr std::int64_t most_between_looks_ns = 2'000'000;
+
   hal::MonotonicClock clock_;
   std::mutex mutex_;
+  std::int64_t looked_ns_ = clock_.now_ns();
+  std::int64_t now_ns_ = looked_ns_;
   protocol::DeviceEmulator device_;
 };
 

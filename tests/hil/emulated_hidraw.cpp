@@ -57,6 +57,7 @@ void EmulatedHidraw::poll_device() {
 /// Queues what the device has; false when it has gone. A halted endpoint is usbhid's business: it looks like silence.
 bool EmulatedHidraw::take_reports() {
   for (;;) {
+    if (!may_overflow_ && reports_.size() == queue_reports) return true;
     std::array<std::byte, protocol::hid_report_bytes> report{};
     const Transfer transfer =
         when_there([&](DeviceEmulator& device, std::int64_t now_ns) { return device.read(now_ns, report); });
@@ -138,6 +139,11 @@ EmulatedHidraw::Answer EmulatedHidraw::ioctl(unsigned long request, void* argume
     return feature(transfer, transfer.bytes);
   }
   return {-1, ENOTTY};
+}
+
+void EmulatedHidraw::let_overflow() {
+  const std::lock_guard lock(mutex_);
+  may_overflow_ = true;
 }
 
 void EmulatedHidraw::fail_reads(int error, int count) {

@@ -16,7 +16,8 @@
 namespace compueye::hil {
 
 /// Linux's side of one plugging-in of a HID eye: drivers/hid/hidraw.c and usbhid over the emulated eye. A thread polls
-/// the interrupt endpoint as a host controller does. For clients of this process.
+/// the interrupt endpoint as a host controller does, but leaves the eye's reports where they are while the queue is
+/// full: a client on a busy machine would lose some. For clients of this process.
 class EmulatedHidraw {
  public:
   static constexpr std::size_t queue_reports = 64;  ///< HIDRAW_BUFFER_SIZE
@@ -42,6 +43,8 @@ class EmulatedHidraw {
   /// A program opened the file: it sees reports from now on.
   void opened();
 
+  /// From now on a report for which the queue has no room is lost, as Linux loses it.
+  void let_overflow();
   /// The next reads fail so.
   void fail_reads(int error, int count = 1);
   [[nodiscard]] Counters counters();
@@ -62,7 +65,7 @@ class EmulatedHidraw {
   std::condition_variable changed_;
   std::deque<std::vector<std::byte>> reports_;
   int read_error_ = 0, read_errors_ = 0;
-  bool gone_ = false, stopping_ = false;
+  bool gone_ = false, stopping_ = false, may_overflow_ = false;
   Counters counters_;
   std::thread poller_;
 };

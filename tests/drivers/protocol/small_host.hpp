@@ -111,7 +111,7 @@ class SmallHost {
       is_hid() ? reports.push(bytes) : stream.feed(bytes);
     }
   }
-  hal::Result<hal::SampleBlock> frame() { return frame(time_.now_ns() + second); }
+  hal::Result<hal::SampleBlock> frame() { return frame(time_.now_ns() + frame_ns); }
 
   /// Whether the valid samples of a block are those shown in frame `device_frame`.
   [[nodiscard]] bool right(const hal::SampleBlock& block, std::uint64_t device_frame) const {
@@ -127,6 +127,7 @@ class SmallHost {
   int bits, channels;
   std::uint32_t frame_rate_mhz = 100'000;
   std::int64_t request_ns = control_deadline_ns;  ///< how long a request may take
+  std::int64_t frame_ns = second;                 ///< how long a frame is waited for
   PacketStream stream;
   FrameAssembler packets;
   HidAssembler reports;

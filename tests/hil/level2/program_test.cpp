@@ -79,7 +79,8 @@ TEST_CASE("program: devices lists what is attached, with what the eyes say of th
   HidPort hid(testbed, eye_of("CE-HID", &protocol::hid_bus));
   usb.plug();
   hid.plug();
-  UsbBench::wait_for_boot();
+  wait_for_boot(usb);
+  wait_for_boot(hid);
   hal::MonotonicClock clock;
   const firmware::AttachedEyes attached = firmware::list_attached_eyes(clock);
   CHECK(attached.notes.empty());
@@ -107,7 +108,8 @@ TEST_CASE("program: run streams frames from an eye on USB and on HID") {
   HidPort hid(testbed, eye_of("CE-HID", &protocol::hid_bus));
   usb.plug();
   hid.plug();
-  UsbBench::wait_for_boot();
+  wait_for_boot(usb);
+  wait_for_boot(hid);
   const test::TemporaryFolder folder;
   for (const std::string name : {"generic-usb", "generic-hid"}) {
     CAPTURE(name);
@@ -122,7 +124,7 @@ TEST_CASE("program: what was recorded on USB replays into the same pictures ever
   HIL_TESTBED(testbed);
   UsbPort usb(testbed, eye_of("CE-USB", &protocol::usb_bus));
   usb.plug();
-  UsbBench::wait_for_boot();
+  wait_for_boot(usb);
   const test::TemporaryFolder folder;
   RunOptions options = options_of(copied("generic-usb", folder), 40);
   options.format = "png16";
@@ -152,7 +154,7 @@ TEST_CASE("program: a run goes on when the eye is plugged in again") {
   HIL_TESTBED(testbed);
   UsbPort usb(testbed, eye_of("CE-USB", &protocol::usb_bus));
   usb.plug();
-  UsbBench::wait_for_boot();
+  wait_for_boot(usb);
   const test::TemporaryFolder folder;
   // Unplugged when the trial frame of the set-up is long over and the run is under way.
   const auto frames_made = [&] { return usb.cable.with([](auto& device, auto) { return device.truth().frames; }); };
@@ -185,7 +187,7 @@ TEST_CASE("program: an eye that is not there, or does not fit the board, is an e
   settings.descriptor.serial = "CE-SMALL";
   UsbPort usb(testbed, settings);
   usb.plug();
-  UsbBench::wait_for_boot();
+  wait_for_boot(usb);
   test::check_error(run(options_of(board("generic-usb"), 1)), hal::ErrorCode::mismatch, "eye CE-SMALL",
                     {"generic-usb", "20", "64"});
   RunOptions lossless = options_of(board("generic-usb"), 1);

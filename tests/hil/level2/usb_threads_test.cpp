@@ -41,6 +41,7 @@ class ShimmedEye {
       }
     });
     host.frame_rate_mhz = 800'000;
+    host.request_ns = host.frame_ns = 60'000'000'000;  // what has to come is waited for
   }
   ~ShimmedEye() {
     transport.close();
@@ -109,7 +110,8 @@ TEST_CASE("RESET_PIPES under a reading thread loses no transfer") {
   ShimmedEye eye;
   REQUIRE(eye.host.start());
   std::atomic<bool> stop = false;
-  std::uint64_t bytes = 0, others = 0;
+  std::atomic<std::uint64_t> bytes = 0;
+  std::uint64_t others = 0;
   std::thread reading([&] {
     std::vector<std::byte> chunk(16384);
     while (!stop) {
@@ -121,7 +123,7 @@ TEST_CASE("RESET_PIPES under a reading thread loses no transfer") {
   for (int k = 0; k < 25; ++k) {
     REQUIRE(eye.host.request(protocol::Request::reset_pipes));
     REQUIRE(eye.host.request(protocol::Request::start));
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    for (const std::uint64_t before = bytes; bytes == before;) std::this_thread::yield();
   }
   stop = true;
   reading.join();
@@ -138,7 +140,7 @@ TEST_CASE("a pulled plug ends reading and asking, and closing ends everything") 
   ShimmedEye eye;
   REQUIRE(eye.host.start());
   hal::ErrorCode asked = hal::ErrorCode::usage, read = hal::ErrorCode::usage;
-  const auto give_up = eye.in_ms(5000);
+  const auto give_up = eye.in_ms(60'000);
   std::thread asking([&] {
     while (asked != hal::ErrorCode::disconnected && eye.clock.now_ns() < give_up) {
       const auto status = eye.host.status();
