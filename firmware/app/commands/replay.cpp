@@ -55,11 +55,16 @@ std::string utc(std::int64_t unix_ns) {
   return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(unix_ns / 1'000'000'000)));
 }
 
-/// "key = value" lines as "key value, ...".
-std::string one_line(std::string settings) {
-  while (!settings.empty() && settings.back() == '\n') settings.pop_back();
+/// "key = value" lines as "key = value, ...", without those that spell the board out.
+std::string one_line(std::string_view settings) {
   std::string text;
-  for (const char c : settings) text += c == '\n' ? std::string(", ") : std::string(1, c);
+  while (!settings.empty()) {
+    const std::size_t end = std::min(settings.find('\n'), settings.size());
+    const std::string_view line = settings.substr(0, end);
+    settings.remove_prefix(std::min(end + 1, settings.size()));
+    if (line.empty() || line.starts_with("board.")) continue;
+    text += (text.empty() ? "" : ", ") + std::string(line);
+  }
   return visible_text(text);
 }
 

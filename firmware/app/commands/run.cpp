@@ -115,6 +115,7 @@ Result<void> BoardRun::make_eye() {
   progress(options_.replays() ? "recording" : board_.source.simulated() ? "simulated eye" : "eye", 0.0, 0.0);
   source_ = TRY(RunSource::make(options_, board_, scene_, frames(), session_.clock()));
   report_.source = source_->name();
+  if (!source_->mismatch().empty()) choice_notes_.push_back(source_->mismatch());
   TRY(choose_eye(progress));
   session_.end_progress();
   for (const std::string& sentence : choice_notes_) note(sentence);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "drivers/recording/recording_file.hpp"
+#include "firmware/eye/settings/board_lines.hpp"
 #include "firmware/eye/source_list.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
@@ -20,10 +21,18 @@ namespace {
 
 /// Lines "key = value".
 std::string header_text(const RecordingRequest& request, const Board& board) {
-  std::string text = fmt::format("board = {}\ndistance_mm = {}\n", visible_text(board.name), board.object.distance_mm);
+  std::string text = board_lines(board);
   if (!board.source.simulated()) return text;
   return text + fmt::format("scene = {}\nscene_seed = {}\nseed = {}\n", visible_text(request.scene), request.scene_seed,
                             request.seed);
+}
+
+/// Empty where nothing differs.
+std::string mismatch_of(const recording::RecordingReader& recording, const Board& board) {
+  const auto differences = board_differences(recording.header().settings, board);
+  if (differences.empty()) return {};
+  return fmt::format("{} was recorded with another board: {}; expect pictures that are wrong", recording.place(),
+                     text_of(differences));
 }
 
 std::int64_t unix_minus(const hal::Clock& clock) {
@@ -62,6 +71,7 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
     auto replay = TRY(recording::ReplaySource::open(options.replay, options.pace(), clock));
     TRY(check_fits(replay->describe(), board, options.replay));
     made.replay_ = replay.get();
+    made.mismatch_ = mismatch_of(replay->recording(), board);
     made.source_ = std::move(replay);
     return made;
   }

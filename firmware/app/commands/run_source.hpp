@@ -50,6 +50,8 @@ class RunSource {
   [[nodiscard]] hal::SampleSource& source() noexcept;
   /// "sim SIM-8X8", "replay CE-1 from eye.rec".
   [[nodiscard]] std::string name() const;
+  /// Where the recording's board was another one, a sentence; empty: it was not, or there is no recording.
+  [[nodiscard]] const std::string& mismatch() const noexcept { return mismatch_; }
 
   // After the run:
   /// What there is to say about the recording that was read or written, a sentence each.
@@ -62,6 +64,7 @@ class RunSource {
 
   std::unique_ptr<hal::SampleSource> source_;
   const recording::ReplaySource* replay_ = nullptr;  // source_, if that is what it is
+  std::string mismatch_;
   std::unique_ptr<recording::RecordingSource> recorder_;
 };
 

@@ -81,6 +81,21 @@ TEST_CASE("a recorded run replays into the same pictures, bit for bit, at both p
   CHECK(compared["quality"]["nmse"].get<double>() < 1e-3);
 }
 
+TEST_CASE("a replay on another board, distance or dark level says which settings differ") {
+  const CopiedBoard board;
+  const auto file = board.outside("eye.rec");
+  record(board, file, {"--frames", "3", "--lossless"});
+  const auto notes_of = [&](const nlohmann::json& json) { return json["notes"].dump(); };
+  const std::string none = notes_of(board.run_json({"--replay", file.string()}));
+  CHECK_FALSE(contains(none, "eye.rec"));
+  const std::string farther = notes_of(board.run_json({"--replay", file.string(), "--distance", "31"}));
+  for (const char* value : {"object.distance_mm", "30", "31"}) CHECK(names(farther, value));
+  CHECK_FALSE(contains(farther, "object.rows"));
+  board.change("dark_level_lsb = 64", "dark_level_lsb = 200");
+  const std::string darker = notes_of(board.run_json({"--replay", file.string()}));
+  for (const char* value : {"sensor.dark_level_lsb", "64", "200"}) CHECK(names(darker, value));
+}
+
 TEST_CASE("a damaged and torn recording still runs, and the run says what is missing") {
   const CopiedBoard board;
   const auto file = board.outside("eye.rec");
