@@ -71,6 +71,7 @@ TEST_CASE("every command shows how it is used: each option, and an example") {
     const Outcome help = run_compueye(std::string(command->name) + " --help", problem.folder().path());
     CHECK(help.exit_code == 0);
     CHECK(help.err.empty());
+    CHECK(std::none_of(help.out.begin(), help.out.end(), [](char c) { return c != '\n' && (c < ' ' || c > '~'); }));
     const std::size_t examples = help.out.find("Example");
     REQUIRE(examples != std::string::npos);
     CHECK(help.out.find("compueye " + std::string(command->name), examples) != std::string::npos);
