@@ -72,6 +72,7 @@ void DeviceMachine::done(Order order, std::int64_t now_ns) noexcept {
     case Order::set_config:
       return go(MachineState::configure, Order::get_config);
     case Order::get_config:
+      wrong_echoes_ = 0;
       return go(MachineState::configure, Order::start);
     case Order::start:
       return go(MachineState::read, Order::read);

@@ -43,7 +43,7 @@ enum class Order : std::uint8_t {
 /// - A device that is given up in READ is left open, so that it can be asked about its stream.
 /// - An outage lasts from the failure in READ to the next frame. It is given up when an attempt fails after
 ///   `limit_ns`; at once when that is 0. Another protocol version or another descriptor is given up at once, a wrong
-///   echo when it came `echo_tries` times in a row.
+///   echo when it came `echo_tries` times without a right one.
 class DeviceMachine {
  public:
   static constexpr int echo_tries = 3;
@@ -67,6 +67,9 @@ class DeviceMachine {
 
   [[nodiscard]] MachineState state() const noexcept { return state_; }
   [[nodiscard]] std::int64_t resume_ns() const noexcept { return resume_ns_; }
+  /// How long no frame has come, since the failure in READ; 0 when there is no outage.
+  [[nodiscard]] bool in_outage() const noexcept { return outage_; }
+  [[nodiscard]] std::int64_t outage_ns(std::int64_t now_ns) const noexcept { return outage_ ? now_ns - outage_ns_ : 0; }
   /// Whether the device is to be held open.
   [[nodiscard]] bool is_open() const noexcept { return open_; }
 

@@ -31,6 +31,11 @@ Failure failure_of(Order order, hal::ErrorCode code) noexcept {
   }
 }
 
+/// A try of one that the reader's deadline cuts short is made again. START is not: the device may have begun.
+bool is_repeated(Order order) noexcept {
+  return order != Order::open && order != Order::start;
+}
+
 bool is_away(Failure why) noexcept {
   return why == Failure::unplugged || why == Failure::absent || why == Failure::open_failed ||
          why == Failure::other_serial;
@@ -50,14 +55,21 @@ std::string in_seconds(std::int64_t ns) {
 
 }  // namespace
 
-/// Carries out orders until the machine is in `state`.
+/// Carries out orders until the machine is in `state`, for `limit_ns` at most.
 hal::Result<void> DeviceSource::get_to(MachineState state, std::int64_t limit_ns) {
+  const std::int64_t until_ns = clock_.now_ns() + limit_ns;
+  last_error_ = hal::timed_out().value();
   machine_.begin(clock_.now_ns(), limit_ns);
   for (;;) {
-    const Order order = machine_.next(clock_.now_ns());
+    const std::int64_t now_ns = clock_.now_ns();
+    const Order order = machine_.next(now_ns);
     if (machine_.state() == state) return {};
     if (order == Order::none) break;
-    carry_out(order, clock_.now_ns() + protocol::control_deadline_ns);
+    if (now_ns >= until_ns) {
+      if (pages_) last_error_ = too_slow(limit_ns);
+      break;
+    }
+    carry_out(order, std::min(now_ns + protocol::control_deadline_ns, until_ns));
   }
   hal::Error error = last_error_;
   if (error.place.empty()) error.place = serial_.empty() ? transport_->describe().bus : serial_;
@@ -67,15 +79,25 @@ hal::Result<void> DeviceSource::get_to(MachineState state, std::int64_t limit_ns
   return tl::unexpected(std::move(error));
 }
 
+hal::Error DeviceSource::too_slow(std::int64_t limit_ns) const {
+  return {hal::ErrorCode::timeout, serial_.empty() ? transport_->describe().bus : serial_,
+          "the eye answers, but of its description only " + std::to_string(pages_->bytes().size()) + " bytes came in " +
+              in_seconds(limit_ns) + "; its firmware is too slow"};
+}
+
 void DeviceSource::carry_out(Order order, std::int64_t until_ns) {
   if (order == Order::pause) return pause(std::min(machine_.resume_ns(), until_ns));
   blame_.reset();
   const std::int64_t began_ns = clock_.now_ns();
+  if (order == Order::descriptor && pages_ && began_ns - pages_ns_ >= settings_.start_limit_ns) {
+    return fail(Failure::request_timeout, too_slow(settings_.start_limit_ns));
+  }
   auto done = attempt(order, until_ns);
   if (order == Order::descriptor && done && pages_) return;  // the next page
-  // Cut short by the reader, a request is made again; tries that together took a device's whole time are one that
-  // failed.
-  if (!done && requests_.cut_short() && order != Order::start) {
+  // Cut short by the reader, a request is made again, and not before the reader's deadline has come; tries that
+  // together took a device's whole time are one that failed.
+  if (!done && done.error().code == hal::ErrorCode::timeout && is_repeated(order) && requests_.cut_short()) {
+    clock_.sleep_until_ns(until_ns);
     unanswered_ns_ += clock_.now_ns() - began_ns;
     if (unanswered_ns_ < protocol::control_deadline_ns) return;
   }
@@ -105,7 +127,7 @@ hal::Result<void> DeviceSource::attempt(Order order, std::int64_t until_ns) {
       next_config_id();
       return requests_.set_configuration(configuration_, until_ns);
     case Order::get_config:
-      return requests_.check_configuration(configuration_, serial_, until_ns);
+      return compare_echo(until_ns);
     case Order::start: {
       auto started = requests_.order(protocol::Request::start, until_ns);
       // One that timed out may have arrived.
@@ -164,19 +186,34 @@ tl::unexpected<hal::Error> DeviceSource::other_eye(const std::string& found) {
 hal::Result<void> DeviceSource::look_at_status(std::int64_t until_ns) {
   const auto status = TRY(requests_.status(until_ns));
   if (extent_.is_open()) close_stream(extent_.close(status, clock_.now_ns()), lost_as_);
-  if (has_status_ && status.boot_count != status_.boot_count) {
-    ++failures_[Failure::rebooted];
+  if (started_anew(status)) ++failures_[Failure::rebooted];
+  return {};
+}
+
+/// Since the last STATUS, which this one is from now on.
+bool DeviceSource::started_anew(const protocol::Status& status) noexcept {
+  const bool anew = has_status_ && status.boot_count != status_.boot_count;
+  if (anew) {
     machine_.doubt_identity();
     clock_anew_ = true;
   }
   status_ = status;
   has_status_ = true;
-  return {};
+  return anew;
+}
+
+/// A device that has started anew since SET_CONFIG has no configuration to return: it is not blamed for that.
+hal::Result<void> DeviceSource::compare_echo(std::int64_t until_ns) {
+  auto same = requests_.check_configuration(configuration_, serial_, until_ns);
+  if (same || same.error().code != hal::ErrorCode::mismatch) return same;
+  if (started_anew(TRY(requests_.status(until_ns)))) blame_ = Failure::rebooted;
+  return same;
 }
 
 hal::Result<void> DeviceSource::fetch_descriptor(std::int64_t until_ns) {
   if (!pages_) {
     pages_.emplace(settings_.bus->page_bytes, transport_->describe().bus);
+    pages_ns_ = clock_.now_ns();
   }
   TRY(requests_.page(*pages_, until_ns));
   if (!pages_->complete()) return {};
@@ -225,12 +262,13 @@ void DeviceSource::fail(Failure why, hal::Error error) {
   ++failures_[why];
   last_error_ = std::move(error);
   if (was_reading) ++failures_[Failure::restart];
-  if (why == Failure::unplugged) extent_.saw_gone(now_ns);
+  if (is_away(why) && why != Failure::open_failed) extent_.saw_gone(now_ns);
   if (quiet_since_ns_) extent_.saw_quiet(*quiet_since_ns_);
   pages_.reset();
   machine_.failed(why, now_ns);
   if (machine_.state() == MachineState::given_up) {
     ++failures_[Failure::gave_up];
+    gave_up_after_ns_ = machine_.outage_ns(now_ns);
   } else if (was_open && !machine_.is_open() && !is_away(why)) {
     ++failures_[Failure::bus_reset];
   }
@@ -246,7 +284,7 @@ hal::Error DeviceSource::given_up(std::int64_t deadline_ns) {
   close_transport();
   std::string why = last_error_.sentence.empty() ? "it does not answer" : last_error_.sentence;
   return {hal::ErrorCode::disconnected, serial_,
-          "frames stopped, and recovery was given up after " + in_seconds(settings_.recovery_limit_ns) + ": " + why +
+          "frames stopped, and recovery was given up after " + in_seconds(gave_up_after_ns_) + ": " + why +
               "; plug the eye in and start again"};
 }
 

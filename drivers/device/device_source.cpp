@@ -13,6 +13,11 @@ namespace compueye::device {
 namespace {
 
 constexpr std::size_t least_chunk_bytes = 65536;
+// Looks at a stream that bring no frame, after which the reader pauses: frames take fewer, whatever comes in their
+// place does not get all the processor's time, and a transport that answers at once with nothing does not stop the
+// clock.
+constexpr int most_looks = 1000;
+constexpr std::int64_t look_pause_ns = 1'000'000;
 constexpr BackOffSettings time_pauses{50'000'000, 10'000'000'000};
 
 /// What one read of the transport gets.
@@ -80,7 +85,8 @@ hal::Result<void> DeviceSource::do_start() {
 
 hal::Result<hal::SampleBlock> DeviceSource::do_read(std::int64_t deadline_ns) {
   int late_reads = 0;
-  for (;;) {
+  for (int looks = 1;; ++looks) {
+    if (looks % most_looks == 0) clock_.sleep_until_ns(std::min(clock_.now_ns() + look_pause_ns, deadline_ns));
     const std::int64_t now_ns = clock_.now_ns();
     const Order order = machine_.next(now_ns);
     if (order == Order::none) return tl::unexpected(given_up(deadline_ns));

@@ -92,8 +92,11 @@ class DeviceSource final : public hal::SampleSource {
   void close_transport() noexcept;
   [[nodiscard]] hal::Result<void> ping(std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> look_at_status(std::int64_t until_ns);
+  [[nodiscard]] bool started_anew(const protocol::Status& status) noexcept;
+  [[nodiscard]] hal::Result<void> compare_echo(std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> fetch_descriptor(std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> judge(protocol::DeviceDescriptor found);
+  [[nodiscard]] hal::Error too_slow(std::int64_t limit_ns) const;
   [[nodiscard]] tl::unexpected<hal::Error> other_eye(const std::string& found);
   void next_config_id() noexcept;
   void begin_stream() noexcept;
@@ -108,6 +111,7 @@ class DeviceSource final : public hal::SampleSource {
   DeviceMachine machine_;
   FailureCounters failures_;
   hal::Error last_error_;
+  std::int64_t gave_up_after_ns_ = 0;
   std::int64_t unanswered_ns_ = 0;  // what requests waited in vain that were cut short
   std::optional<Failure> blame_;    // of the order that failed, where its error does not say
 
@@ -115,6 +119,7 @@ class DeviceSource final : public hal::SampleSource {
   hal::SourceDescription description_;
   std::string serial_;  // that we are bound to; empty until one was identified
   std::optional<protocol::DescriptorPages> pages_;
+  std::int64_t pages_ns_ = 0;  // when the first was asked for
   protocol::Configuration configuration_;
   protocol::Status status_;  // the last one that IDENTIFY got
   bool has_status_ = false;

@@ -109,7 +109,7 @@ TEST_CASE("when recovery is given up read() says why, again and again, and a new
     rig.inject({.kind = FaultKind::unplug, .duration_ns = 20 * second});
     const std::int64_t unplugged_ns = rig.clock.now_ns();
     auto block = rig.next_frame();
-    test::check_error(block, ErrorCode::disconnected, "CE-1", {"3"});
+    test::check_error(block, ErrorCode::disconnected, "CE-1", {"3.1"});
     const auto last = protocol::EmulatedTransport(rig.device, rig.clock).open();  // what it failed with, over and over
     REQUIRE_FALSE(last);
     CHECK(block.error().sentence.find(last.error().sentence) != std::string::npos);

@@ -14,6 +14,7 @@
 #include "drivers/device/device_source.hpp"
 #include "drivers/protocol/emulated_transport.hpp"
 #include "hal/clock.hpp"
+#include "tests/drivers/device/tampered_transport.hpp"
 #include "tests/drivers/protocol/emulated_eye.hpp"
 
 /// An emulated eye with a source on it, and what it truly made.
@@ -78,8 +79,9 @@ class EyeRig {
         shown(bits),
         device(protocol::DeviceEmulator::create(emulator, shown.generator(), clock.now_ns()).value()) {
     shown.watch(device);
-    made_ =
-        DeviceSource::create(std::move(settings), std::make_unique<protocol::EmulatedTransport>(device, clock), clock);
+    auto transport = std::make_unique<TamperedTransport>(device, clock);
+    way = transport.get();
+    made_ = DeviceSource::create(std::move(settings), std::move(transport), clock);
   }
 
   /// Of create(): a test that expects it to fail looks at this.
@@ -147,6 +149,7 @@ class EyeRig {
   int bits;
   RunGenerator shown;
   protocol::DeviceEmulator device;
+  TamperedTransport* way = nullptr;  ///< lives as long as the source
 
  private:
   hal::Result<std::unique_ptr<DeviceSource>> made_;

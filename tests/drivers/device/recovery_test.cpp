@@ -1,0 +1,136 @@
+// What recovery promises when faults meet: it ends, in time, and blames the device for what the device did.
+
+#include "tests/drivers/device/eye_rig.hpp"
+#include "tests/hal/error_check.hpp"
+
+using namespace compueye;
+using namespace compueye::device;
+using namespace compueye::device::tests;
+using hal::ErrorCode;
+using protocol::buses;
+using protocol::Request;
+using protocol::tests::eye_settings;
+
+namespace {
+
+void read_frames(EyeRig& rig, int frames) {
+  for (int f = 0; f < frames; ++f) REQUIRE(rig.next_frame());
+}
+
+/// How often open() is called while the eye is away for 2 s, its requests unanswered from `silent_ns` on.
+std::uint64_t opens_of_an_outage(const Bus* bus, std::int64_t slice_ns, std::int64_t silent_ns,
+                                 std::int64_t unplugged_ns) {
+  constexpr std::uint64_t too_many = 1000;
+  EyeRig rig(eye_settings(bus));
+  REQUIRE(rig.start());
+  read_frames(rig, 5);
+  std::uint64_t opens = 0;
+  rig.way->at_open = [&] { REQUIRE(++opens < too_many); };
+  const std::int64_t now_ns = rig.clock.now_ns();
+  if (bus == &hid_bus) {
+    rig.inject({.kind = FaultKind::clock_jump, .at_ns = now_ns + ms, .value = second});
+  } else {
+    rig.inject({.kind = FaultKind::stall_stream, .at_ns = now_ns + ms});
+  }
+  rig.inject({.kind = FaultKind::control_silence, .at_ns = now_ns + silent_ns, .duration_ns = 500 * ms});
+  rig.inject({.kind = FaultKind::unplug, .at_ns = now_ns + unplugged_ns, .duration_ns = 2 * second});
+  while (rig.clock.now_ns() < now_ns + 2 * second) static_cast<void>(rig.read(slice_ns));
+  read_frames(rig, 3);
+  return opens;
+}
+
+}  // namespace
+
+TEST_CASE("an unplugging while a request is under way: read() returns, and open() is called as the pauses say") {
+  std::uint64_t most = 0;
+  for (const Bus* const bus : buses) {
+    for (const std::int64_t slice_ns : {20 * ms, 100 * ms}) {
+      for (std::int64_t silent_ns = 1 * ms; silent_ns <= 4 * ms; silent_ns += ms / 4) {
+        for (std::int64_t unplugged_ns = 20 * ms; unplugged_ns <= 150 * ms; unplugged_ns += 10 * ms) {
+          CAPTURE(bus->name);
+          CAPTURE(slice_ns);
+          CAPTURE(silent_ns);
+          CAPTURE(unplugged_ns);
+          most = std::max(most, opens_of_an_outage(bus, slice_ns, silent_ns, unplugged_ns));
+        }
+      }
+    }
+  }
+  CHECK(most <= 12);
+}
+
+TEST_CASE("a transport that answers at once with nothing neither stops read() nor its clock") {
+  for (const Bus* const bus : buses) {
+    EyeRig rig(eye_settings(bus));
+    REQUIRE(rig.start());
+    read_frames(rig, 3);
+    int reads = 0;
+    rig.way->nothing_at_once = [&] { return ++reads > 0; };
+    for (int r = 0; r < 5; ++r) CHECK_FALSE(rig.read(20 * ms));
+    CHECK(reads < 200'000);
+    rig.way->nothing_at_once = nullptr;
+    read_frames(rig, 3);
+  }
+}
+
+TEST_CASE("an eye that starts anew while it is configured is not blamed for a wrong echo") {
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus->name);
+    auto emulator = eye_settings(bus);
+    emulator.boot_ns = 0;  // it answers at once, and shows no configuration
+    EyeRig rig(emulator);
+    REQUIRE(rig.start());
+    read_frames(rig, 5);
+    int reboots = 4;
+    rig.way->at_request = [&](Request request, const auto& done) {
+      if (done && request == Request::set_config && reboots-- > 0) rig.inject({.kind = FaultKind::reboot});
+    };
+    rig.inject({.kind = FaultKind::stall_stream});
+    const std::int64_t began_ns = rig.clock.now_ns();
+    read_frames(rig, 1);
+    CHECK(rig.clock.now_ns() - began_ns <= 400 * ms);
+    CHECK(rig.source().failures()[Failure::rebooted] == 4);
+    CHECK(rig.source().failures()[Failure::wrong_echo] == 0);
+  }
+}
+
+TEST_CASE("wrong echoes end it when there is no right one between them, and the words tell the time") {
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus->name);
+    EyeRig rig(eye_settings(bus));
+    REQUIRE(rig.start());
+    read_frames(rig, 5);
+    int halts = 3;
+    rig.way->at_request = [&](Request request, const auto& done) {
+      if (!done || request != Request::start || halts-- <= 0) return;
+      rig.inject({.kind = FaultKind::stall_stream, .at_ns = rig.clock.now_ns() + ms});
+      rig.inject({.kind = FaultKind::wrong_echo});
+    };
+    rig.inject({.kind = FaultKind::wrong_echo});
+    rig.inject({.kind = FaultKind::stall_stream});
+    read_frames(rig, 3);
+    CHECK(rig.source().failures()[Failure::wrong_echo] == 4);
+
+    rig.inject({.kind = FaultKind::wrong_echo, .count = 3});
+    rig.inject({.kind = FaultKind::stall_stream});
+    test::check_error(rig.next_frame(), ErrorCode::disconnected, "CE-1", {"0.0"});
+  }
+}
+
+TEST_CASE("create() ends in its time, however slowly a long description comes") {
+  for (const Bus* const bus : buses) {
+    auto emulator = eye_settings(bus, bus == &hid_bus ? 200 : 65535);
+    emulator.fifo_bytes = std::size_t{1} << 21U;
+    hal::VirtualClock clock(10 * second);
+    auto device = protocol::DeviceEmulator::create(emulator, protocol::tests::shown(12), clock.now_ns()).value();
+    auto transport = std::make_unique<TamperedTransport>(device, clock);
+    transport->at_request = [&](Request request, const auto&) {
+      if (request == Request::get_desc) clock.advance(95 * ms);
+    };
+    DeviceSettings settings = source_settings(bus);
+    settings.start_limit_ns = second;
+    const auto made = DeviceSource::create(settings, std::move(transport), clock);
+    CHECK(clock.now_ns() <= 11 * second + 100 * ms);
+    test::check_error(made, ErrorCode::timeout, "emulator " + std::string(bus->name), {"1.0"});
+  }
+}
