@@ -307,7 +307,8 @@ class ContractTest {
     next();
     test_.disconnect(*source_);
     bool gone = false;
-    for (int i = 0; i < soon && !gone; ++i) {
+    // On a real clock the test may be late, and what came before the end is still handed out.
+    for (int i = 0; i < (test_.make_clock ? 1000 : soon) && !gone; ++i) {
       const auto block = source_->read(clock_->now_ns() + 20 * period_ns() + test_.patience_ns);
       gone = !block && block.error().code == ErrorCode::disconnected;
       if (gone) expect(!block.error().sentence.empty(), "nothing tells the user that the device went away");

@@ -17,6 +17,7 @@
 #include "tests/hal/error_check.hpp"
 #include "tests/hil/level2/hid_port.hpp"
 #include "tests/hil/level2/testbed.hpp"
+#include "tests/memory/allocation_counter.hpp"
 
 namespace compueye::hil {
 
@@ -102,6 +103,26 @@ struct Bench {
 };
 using UsbBench = Bench<UsbPort, transport::UsbTransport, transport::UsbSettings, &protocol::usb_bus>;
 using HidBench = Bench<HidPort, transport::HidTransport, transport::HidSettings, &protocol::hid_bus>;
+
+/// Of a bench that streams: a hundred reads with data, then a hundred without.
+template <class AnyBench>
+void check_reading_without_heap(AnyBench& bench) {
+  int full = 0, timeouts = 0;
+  auto used = tests::heap_use_of_this_thread();
+  for (int k = 0; k < 100; ++k) full += bench.read() ? 1 : 0;
+  CHECK((tests::heap_use_of_this_thread() - used).calls() == 0);
+  bench.port.cable.inject({.kind = protocol::FaultKind::silence, .duration_ns = 0});
+  used = tests::heap_use_of_this_thread();
+  while (bench.read(500)) {
+  }
+  for (int k = 0; k < 100; ++k) {
+    const auto got = bench.read(k % 2);
+    timeouts += !got && got.error().code == hal::ErrorCode::timeout ? 1 : 0;
+  }
+  CHECK((tests::heap_use_of_this_thread() - used).calls() == 0);
+  CHECK(full == 100);
+  CHECK(timeouts == 100);
+}
 
 /// The eye `serial`, which the bench asks for, is pulled out of a running stream; `other` comes in its place, then it
 /// comes back.

@@ -7,7 +7,6 @@
 
 #include "drivers/transport/hid_hidapi.hpp"
 #include "tests/hil/level2/benches.hpp"
-#include "tests/memory/allocation_counter.hpp"
 
 namespace compueye::hil {
 namespace {
@@ -84,21 +83,7 @@ TEST_CASE("hid: reading does not use the heap, with and without data") {
   HidBench bench(testbed, hid_eye("CE-1"));
   REQUIRE(bench.host.start());
   bench.check_frames(0, 5);
-  int full = 0, timeouts = 0;
-  auto used = tests::heap_use_of_this_thread();
-  for (int k = 0; k < 100; ++k) full += bench.read() ? 1 : 0;
-  CHECK((tests::heap_use_of_this_thread() - used).calls() == 0);
-  bench.port.cable.inject({.kind = protocol::FaultKind::silence, .duration_ns = 0});
-  used = tests::heap_use_of_this_thread();
-  while (bench.read(500)) {
-  }
-  for (int k = 0; k < 100; ++k) {
-    const auto got = bench.read(k % 2);
-    timeouts += !got && got.error().code == hal::ErrorCode::timeout ? 1 : 0;
-  }
-  CHECK((tests::heap_use_of_this_thread() - used).calls() == 0);
-  CHECK(full == 100);
-  CHECK(timeouts == 100);
+  check_reading_without_heap(bench);
 }
 
 }  // namespace
