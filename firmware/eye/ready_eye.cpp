@@ -38,9 +38,6 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const LivingResponse& l
                                      const recon::Progress& progress) {
   ReadyEye eye;
   eye.sees_ = living.sees;
-  if (progress && !progress("lambda by rule", 0.0, 0.0)) {
-    return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");
-  }
   recon::Plan plan = board.plan;
   // As many as the correction lets pass, so that no usable frame is too much for the solver.
   const auto seeing = static_cast<double>(std::count(eye.sees_.begin(), eye.sees_.end(), 1));
@@ -48,6 +45,9 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const LivingResponse& l
   recon::Objective objective = board.objective;
   eye.lambda_ = TRY(choose_lambda(maker.response(), plan.solver, objective.basis, board.lambda, board.noise_sigma()));
   objective.lambda = eye.lambda_.value;
+  if (progress && !progress("how A is applied", 0.0, 0.0)) {
+    return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");
+  }
   eye.reconstructor_ = std::make_unique<recon::Reconstructor>(TRY(maker.make(objective, plan, progress)));
   eye.factor_origin_ = maker.origin();
   eye.notes_ = maker.notes();

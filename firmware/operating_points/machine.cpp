@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -50,6 +51,15 @@ std::string program_hash() {
 
 Machine this_machine() {
   return {cpu_model(), static_cast<int>(std::thread::hardware_concurrency()), COMPUEYE_VERSION " " + program_hash()};
+}
+
+std::uint64_t peak_memory_bytes() {
+  std::ifstream status("/proc/self/status");
+  std::uint64_t kib = 0;
+  for (std::string line; std::getline(status, line);) {
+    if (line.rfind("VmHWM:", 0) == 0) kib = std::strtoull(line.c_str() + 6, nullptr, 10);
+  }
+  return kib * 1024;
 }
 
 }  // namespace compueye::firmware

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace compueye::firmware {
@@ -14,5 +15,8 @@ struct Machine {
 };
 
 [[nodiscard]] Machine this_machine();
+
+/// The most memory that this process has had so far, in bytes; 0 where the system does not tell.
+[[nodiscard]] std::uint64_t peak_memory_bytes();
 
 }  // namespace compueye::firmware

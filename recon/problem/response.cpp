@@ -61,8 +61,7 @@ hal::Result<Response> Response::from_dense(int rows, int cols, std::vector<doubl
   Response r;
   r.rows_ = rows;
   r.cols_ = cols;
-  r.values_ = std::move(values);
-  r.sum_squares();
+  r.hold({}, std::move(values));
   return r;
 }
 
@@ -83,9 +82,7 @@ hal::Result<Response> Response::from_csr(int rows, int cols, std::vector<std::in
   r.rows_ = rows;
   r.cols_ = cols;
   r.row_start_ = std::move(row_start);
-  r.columns_ = std::move(columns);
-  r.values_ = std::move(values);
-  r.sum_squares();
+  r.hold(std::move(columns), std::move(values));
   return r;
 }
 
@@ -102,12 +99,14 @@ hal::Result<Response> Response::with_image(int image_rows, int image_cols) && {
   return std::move(*this);
 }
 
-void Response::sum_squares() noexcept {
-  squared_norm_ = std::inner_product(values_.begin(), values_.end(), values_.begin(), 0.0);
+void Response::hold(std::vector<std::int32_t> columns, std::vector<double> values) {
+  squared_norm_ = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  columns_ = std::make_shared<const std::vector<std::int32_t>>(std::move(columns));
+  values_ = std::make_shared<const std::vector<double>>(std::move(values));
 }
 
 std::int64_t Response::nonzeros(double above) const noexcept {
-  return std::count_if(values_.begin(), values_.end(), [above](double v) { return std::abs(v) > above; });
+  return std::count_if(values_->begin(), values_->end(), [above](double v) { return std::abs(v) > above; });
 }
 
 void Response::forward(std::span<const double> x, std::span<double> y) const {
@@ -144,6 +143,18 @@ std::vector<std::int32_t> Response::seeing_rows() const {
   return seeing;
 }
 
+/// Whether `rows` are in order and hold every entry there is.
+bool Response::only_empty_left_out(std::span<const std::int32_t> rows) const noexcept {
+  if (is_dense()) return false;
+  std::int64_t next = 0;
+  for (const std::int32_t m : rows) {
+    const auto row = static_cast<std::size_t>(m);
+    if (row_start_[row] != next) return false;
+    next = row_start_[row + 1];
+  }
+  return next == stored_entries();
+}
+
 Response Response::select_rows(std::span<const std::int32_t> rows, std::span<const double> scale) const {
   Response r;
   r.rows_ = static_cast<int>(rows.size());
@@ -151,15 +162,26 @@ Response Response::select_rows(std::span<const std::int32_t> rows, std::span<con
   r.image_rows_ = image_rows_;
   r.image_cols_ = image_cols_;
   if (!is_dense()) r.row_start_.push_back(0);
+  if (scale.empty() && only_empty_left_out(rows)) {
+    for (const std::int32_t m : rows) r.row_start_.push_back(row_start_[static_cast<std::size_t>(m) + 1]);
+    r.columns_ = columns_;
+    r.values_ = values_;
+    r.squared_norm_ = squared_norm_;
+    return r;
+  }
+  std::vector<std::int32_t> columns;
+  std::vector<double> values;
+  columns.reserve(columns_->size());
+  values.reserve(values_->size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double factor = scale.empty() ? 1.0 : scale[i];
     for_each_in_row(rows[i], [&](std::int32_t col, double value) {
-      r.values_.push_back(value * factor);
-      if (!is_dense()) r.columns_.push_back(col);
+      values.push_back(value * factor);
+      if (!is_dense()) columns.push_back(col);
     });
-    if (!is_dense()) r.row_start_.push_back(static_cast<std::int64_t>(r.values_.size()));
+    if (!is_dense()) r.row_start_.push_back(static_cast<std::int64_t>(values.size()));
   }
-  r.sum_squares();
+  r.hold(std::move(columns), std::move(values));
   return r;
 }
 
@@ -170,16 +192,20 @@ Response Response::without_rows(std::span<const int> rows) const {
   r.image_rows_ = image_rows_;
   r.image_cols_ = image_cols_;
   r.row_start_.push_back(0);
+  std::vector<std::int32_t> columns;
+  std::vector<double> values;
+  columns.reserve(values_->size());
+  values.reserve(values_->size());
   for (int m = 0; m < rows_; ++m) {
     if (!std::binary_search(rows.begin(), rows.end(), m)) {
       for_each_in_row(m, [&](std::int32_t col, double value) {
-        r.columns_.push_back(col);
-        r.values_.push_back(value);
+        columns.push_back(col);
+        values.push_back(value);
       });
     }
-    r.row_start_.push_back(static_cast<std::int64_t>(r.values_.size()));
+    r.row_start_.push_back(static_cast<std::int64_t>(values.size()));
   }
-  r.sum_squares();
+  r.hold(std::move(columns), std::move(values));
   return r;
 }
 
@@ -187,8 +213,8 @@ std::uint64_t Response::content_hash() const {
   const std::int64_t shape[3] = {rows_, cols_, is_dense() ? 1 : 0};
   XXH64_hash_t hash = XXH3_64bits(shape, sizeof shape);
   hash = XXH3_64bits_withSeed(row_start_.data(), row_start_.size() * sizeof(std::int64_t), hash);
-  hash = XXH3_64bits_withSeed(columns_.data(), columns_.size() * sizeof(std::int32_t), hash);
-  return XXH3_64bits_withSeed(values_.data(), values_.size() * sizeof(double), hash);
+  hash = XXH3_64bits_withSeed(columns_->data(), columns_->size() * sizeof(std::int32_t), hash);
+  return XXH3_64bits_withSeed(values_->data(), values_->size() * sizeof(double), hash);
 }
 
 }  // namespace compueye::recon

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -35,16 +36,16 @@ class Response {
   [[nodiscard]] int image_cols() const noexcept { return image_cols_; }  ///< image_rows * image_cols = N where known
   [[nodiscard]] bool is_dense() const noexcept { return row_start_.empty(); }
   /// Stored entries: rows*cols when dense.
-  [[nodiscard]] std::int64_t stored_entries() const noexcept { return static_cast<std::int64_t>(values_.size()); }
+  [[nodiscard]] std::int64_t stored_entries() const noexcept { return static_cast<std::int64_t>(values_->size()); }
   /// Entries with a magnitude above `above`.
   [[nodiscard]] std::int64_t nonzeros(double above = 0.0) const noexcept;
 
   /// Row-major values of a dense response; the stored values, row after row, of a sparse one.
-  [[nodiscard]] std::span<const double> values() const noexcept { return values_; }
+  [[nodiscard]] std::span<const double> values() const noexcept { return *values_; }
   [[nodiscard]] std::span<const std::int64_t> row_start() const noexcept {
     return row_start_;
-  }                                                                                          ///< M+1; empty if dense
-  [[nodiscard]] std::span<const std::int32_t> columns() const noexcept { return columns_; }  ///< empty if dense
+  }                                                                                           ///< M+1; empty if dense
+  [[nodiscard]] std::span<const std::int32_t> columns() const noexcept { return *columns_; }  ///< empty if dense
 
   /// Calls visit(column, value) for every stored entry of row m, columns ascending.
   template <class Visitor>
@@ -53,8 +54,10 @@ class Response {
     const auto width = static_cast<std::size_t>(cols_);
     const std::size_t begin = is_dense() ? row * width : static_cast<std::size_t>(row_start_[row]);
     const std::size_t end = is_dense() ? begin + width : static_cast<std::size_t>(row_start_[row + 1]);
+    const double* values = values_->data();
+    const std::int32_t* columns = columns_->data();
     for (std::size_t e = begin; e < end; ++e) {
-      visit(is_dense() ? static_cast<std::int32_t>(e - begin) : columns_[e], values_[e]);
+      visit(is_dense() ? static_cast<std::int32_t>(e - begin) : columns[e], values[e]);
     }
   }
 
@@ -71,7 +74,8 @@ class Response {
   /// Rows that see something. Blind rows carry no information about x and are dropped by every solver.
   [[nodiscard]] std::vector<std::int32_t> seeing_rows() const;
 
-  /// The given rows, each multiplied by its factor (`scale` empty: by 1). Rows may not repeat.
+  /// The given rows, each multiplied by its factor (`scale` empty: by 1). Rows may not repeat. Where that leaves out
+  /// nothing but empty rows of a sparse response, the entries are shared, not copied.
   [[nodiscard]] Response select_rows(std::span<const std::int32_t> rows, std::span<const double> scale = {}) const;
 
   /// The given rows (ascending) empty, the others as they are, in sparse form: a dead ommatidium tells nothing, and
@@ -84,15 +88,17 @@ class Response {
 
  private:
   Response() = default;
-  void sum_squares() noexcept;
+  void hold(std::vector<std::int32_t> columns, std::vector<double> values);
+  [[nodiscard]] bool only_empty_left_out(std::span<const std::int32_t> rows) const noexcept;
   int rows_ = 0;
   int cols_ = 0;
   int image_rows_ = 0;
   int image_cols_ = 0;
   double squared_norm_ = 0.0;
   std::vector<std::int64_t> row_start_;
-  std::vector<std::int32_t> columns_;
-  std::vector<double> values_;
+  /// Never changed, so that copies share them: they are a hundred megabytes of a large eye.
+  std::shared_ptr<const std::vector<std::int32_t>> columns_;
+  std::shared_ptr<const std::vector<double>> values_;
 };
 
 }  // namespace compueye::recon

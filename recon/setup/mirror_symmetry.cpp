@@ -26,23 +26,26 @@ class MirrorSearch {
   MirrorSearch(const Response& response)
       : response_(response), image_rows_(response.image_rows()), image_cols_(response.image_cols()) {
     mirrored_.resize(static_cast<std::size_t>(response.cols()));
+    flipped_.resize(static_cast<std::size_t>(response.cols()));
     double largest = 0.0;
     for (int m = 0; m < response.rows(); ++m) {
-      rows_at_[key(centroid(m))].push_back(m);
+      centroids_.push_back(centroid(m));
+      rows_at_[key(centroids_.back())].push_back(m);
       response.for_each_in_row(m, [&](std::int32_t, double v) { largest = std::max(largest, std::abs(v)); });
     }
     tolerance_ = 1e-11 * largest;
   }
 
   [[nodiscard]] std::optional<Permutation> find(Flip flip) {
+    for (std::int32_t n = 0; n < response_.cols(); ++n) flipped_[static_cast<std::size_t>(n)] = flipped(n, flip);
     Permutation permutation(static_cast<std::size_t>(response_.rows()), -1);
     for (int m = 0; m < response_.rows(); ++m) {
+      if (permutation[static_cast<std::size_t>(m)] >= 0) continue;
       const std::optional<int> image = image_of(m, flip);
-      if (!image) return std::nullopt;
+      // A flip is its own inverse: the image of a row's image is that row.
+      if (!image || permutation[static_cast<std::size_t>(*image)] >= 0) return std::nullopt;
       permutation[static_cast<std::size_t>(m)] = *image;
-    }
-    for (std::size_t m = 0; m < permutation.size(); ++m) {
-      if (permutation[static_cast<std::size_t>(permutation[m])] != static_cast<std::int32_t>(m)) return std::nullopt;
+      permutation[static_cast<std::size_t>(*image)] = m;
     }
     return permutation;
   }
@@ -54,11 +57,13 @@ class MirrorSearch {
 
   [[nodiscard]] Point centroid(int m) const {
     double sum = 0.0, by_row = 0.0, by_col = 0.0;
+    std::int32_t row = 0, row_begin = 0;
     response_.for_each_in_row(m, [&](std::int32_t n, double v) {
-      const std::int32_t row = n / image_cols_, col = n % image_cols_;
+      // Columns ascend, and a division is slower than everything else here.
+      for (; n >= row_begin + image_cols_; row_begin += image_cols_) ++row;
       sum += std::abs(v);
       by_row += std::abs(v) * row;
-      by_col += std::abs(v) * col;
+      by_col += std::abs(v) * (n - row_begin);
     });
     if (!(sum > 0.0)) return {};
     return {by_row / sum, by_col / sum};
@@ -72,14 +77,17 @@ class MirrorSearch {
     return (flip.up_down ? image_rows_ - 1 - row : row) * image_cols_ + (flip.left_right ? image_cols_ - 1 - col : col);
   }
 
+  [[nodiscard]] double& mirrored_at(std::int32_t n) {
+    return mirrored_[static_cast<std::size_t>(flipped_[static_cast<std::size_t>(n)])];
+  }
+
   [[nodiscard]] std::optional<int> image_of(int m, Flip flip) {
-    Point p = centroid(m);
+    Point p = centroids_[static_cast<std::size_t>(m)];
     if (flip.up_down) p.row = image_rows_ - 1 - p.row;
     if (flip.left_right) p.col = image_cols_ - 1 - p.col;
     if (flip.transposed) std::swap(p.row, p.col);
     const CentroidKey at = key(p);
-    response_.for_each_in_row(
-        m, [&](std::int32_t n, double v) { mirrored_[static_cast<std::size_t>(flipped(n, flip))] = v; });
+    response_.for_each_in_row(m, [&](std::int32_t n, double v) { mirrored_at(n) = v; });
     std::optional<int> found;
     for (std::int64_t dr = -1; dr <= 1 && !found; ++dr) {
       for (std::int64_t dc = -1; dc <= 1 && !found; ++dc) {
@@ -90,8 +98,7 @@ class MirrorSearch {
         }
       }
     }
-    response_.for_each_in_row(
-        m, [&](std::int32_t n, double) { mirrored_[static_cast<std::size_t>(flipped(n, flip))] = 0.0; });
+    response_.for_each_in_row(m, [&](std::int32_t n, double) { mirrored_at(n) = 0.0; });
     return found;
   }
 
@@ -110,6 +117,8 @@ class MirrorSearch {
   int image_rows_;
   int image_cols_;
   std::map<CentroidKey, std::vector<int>> rows_at_;
+  std::vector<Point> centroids_;
+  std::vector<std::int32_t> flipped_;  // by the flip that is looked for
   std::vector<double> mirrored_;
   double tolerance_ = 0.0;
 };

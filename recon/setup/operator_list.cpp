@@ -194,6 +194,13 @@ hal::Result<OperatorChoice> choose_operator(const Response& seeing, std::optiona
   if (asked) return as_asked(seeing, *asked);
   const auto sparse = static_cast<double>(seeing.nonzeros()), pixels = static_cast<double>(seeing.cols());
   const double dense = dense_entry_cost * static_cast<double>(seeing.rows()) * pixels;
+  const bool sums_fit = running_sums_fit(seeing.image_rows(), seeing.image_cols());
+  const double taps = sums_fit ? static_cast<double>(running_sum_taps(seeing)) : 0.0;
+  // A run holds every entry, so there is no need to lay out runs where four rows at once beat them at their best.
+  if (sums_fit && taps / 4.0 + pixels < std::min(dense, run_value_cost * sparse)) {
+    OperatorChoice sums = running_sums_of(seeing, taps);
+    if (sums.kind != OperatorKind::running_sums) return sums;
+  }
   double least = std::min(dense, sparse);
   OperatorKind plain = dense < sparse ? OperatorKind::dense : OperatorKind::csr;
   const double runs = run_value_cost * static_cast<double>(dense_run_values(seeing));
@@ -201,9 +208,7 @@ hal::Result<OperatorChoice> choose_operator(const Response& seeing, std::optiona
     least = runs;
     plain = OperatorKind::dense_runs;
   }
-  if (!running_sums_fit(seeing.image_rows(), seeing.image_cols())) return as_asked(seeing, plain);
-  const auto taps = static_cast<double>(running_sum_taps(seeing));
-  if (taps / 4.0 + pixels < least) {
+  if (sums_fit && taps / 4.0 + pixels < least) {
     OperatorChoice sums = running_sums_of(seeing, taps);
     if (sums.kind != OperatorKind::running_sums || taps + pixels < least) return sums;
   }

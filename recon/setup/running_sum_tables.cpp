@@ -1,6 +1,7 @@
 #include "recon/setup/running_sum_tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -8,7 +9,7 @@
 namespace compueye::recon {
 namespace {
 
-/// One row of A, folded: visits its taps lane by lane, elements ascending.
+/// Rows of A, folded: visits the taps of one lane by lane, elements ascending.
 class SpreadRow {
  public:
   SpreadRow(const Response& response, double negligible_share)
@@ -23,28 +24,43 @@ class SpreadRow {
     negligible_ = negligible_share * largest;
   }
 
-  /// Calls visit(element, difference) for every tap of row m in lane q.
+  /// Calls visit(lane, element, difference) for every tap of row m, lane by lane.
   template <class Visit>
-  void for_each_tap(int m, std::size_t lane, Visit&& visit) {
-    spread(m, true);
-    const int half_rows = (rows_ + 1) / 2;
-    for (int r = 0; r < half_rows; ++r) {
-      for (int c = 0; c < half_cols_; ++c) {
-        const double difference = coverage(lane, r, c) - coverage(lane, r, c + 1);
-        if (std::abs(difference) > negligible_) visit(r * half_cols_ + c, difference);
-      }
+  void for_each_tap(int m, Visit&& visit) {
+    std::int32_t first = -1, last = -1;
+    response_.for_each_in_row(m, [&](std::int32_t n, double v) {
+      picture_[static_cast<std::size_t>(n)] = v;
+      if (first < 0) first = n;
+      last = n;
+    });
+    // Rows of the picture that this ommatidium does not see have no taps.
+    for (std::size_t lane = 0; lane < lanes && first >= 0; ++lane) {
+      for_each_in_lane(lane, first / cols_, last / cols_, visit);
     }
-    spread(m, false);
+    response_.for_each_in_row(m, [&](std::int32_t n, double) { picture_[static_cast<std::size_t>(n)] = 0.0; });
   }
 
+  static constexpr std::size_t lanes = 4;
+
  private:
-  void spread(int m, bool in) {
-    response_.for_each_in_row(m,
-                              [&](std::int32_t n, double v) { picture_[static_cast<std::size_t>(n)] = in ? v : 0.0; });
+  template <class Visit>
+  void for_each_in_lane(std::size_t lane, int first_row, int last_row, Visit&& visit) const {
+    const int half_rows = (rows_ + 1) / 2;
+    for (int r = 0; r < half_rows; ++r) {
+      if (row_of(lane, r) < first_row || row_of(lane, r) > last_row) continue;
+      for (int c = 0; c < half_cols_; ++c) {
+        const double difference = coverage(lane, r, c) - coverage(lane, r, c + 1);
+        if (std::abs(difference) > negligible_) visit(lane, r * half_cols_ + c, difference);
+      }
+    }
+  }
+
+  [[nodiscard]] int row_of(std::size_t lane, int r) const noexcept {
+    return (lane & 2U) != 0 ? rows_ / 2 + r : rows_ / 2 - 1 - r;
   }
 
   [[nodiscard]] double coverage(std::size_t lane, int r, int c) const {
-    const int row = (lane & 2U) != 0 ? rows_ / 2 + r : rows_ / 2 - 1 - r;
+    const int row = row_of(lane, r);
     const int col = (lane & 1U) != 0 ? cols_ / 2 + c : cols_ / 2 - 1 - c;
     if (row < 0 || row >= rows_ || col < 0 || col >= cols_) return 0.0;
     return picture_[static_cast<std::size_t>(row) * static_cast<std::size_t>(cols_) + static_cast<std::size_t>(col)];
@@ -150,13 +166,13 @@ std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, co
   SpreadRow spread(seeing, 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon()));
   std::vector<std::uint32_t> lane_first{0};
   for (const std::int32_t m : firsts) {
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-      spread.for_each_tap(m, lane, [&](int element, double difference) {
-        tables.element.push_back(static_cast<std::uint16_t>(element));
-        tables.difference.push_back(static_cast<T>(difference));
-      });
-      lane_first.push_back(static_cast<std::uint32_t>(tables.element.size()));
-    }
+    std::array<std::uint32_t, SpreadRow::lanes> taps{};
+    spread.for_each_tap(m, [&](std::size_t lane, int element, double difference) {
+      tables.element.push_back(static_cast<std::uint16_t>(element));
+      tables.difference.push_back(static_cast<T>(difference));
+      ++taps[lane];
+    });
+    for (const std::uint32_t count : taps) lane_first.push_back(lane_first.back() + count);
   }
   tables.band_row = band_rows(tables.element, half_rows, half_cols);
   tables.first = banded(lane_first, tables.element, tables.band_row, half_cols);
@@ -176,9 +192,7 @@ std::optional<RunningSumTables<T>> running_sum_tables(const Response& seeing, co
 std::int64_t running_sum_taps(const Response& seeing) {
   SpreadRow spread(seeing, 0.5 * static_cast<double>(std::numeric_limits<float>::epsilon()));
   std::int64_t taps = 0;
-  for (int m = 0; m < seeing.rows(); ++m) {
-    for (std::size_t lane = 0; lane < 4; ++lane) spread.for_each_tap(m, lane, [&](int, double) { ++taps; });
-  }
+  for (int m = 0; m < seeing.rows(); ++m) spread.for_each_tap(m, [&](std::size_t, int, double) { ++taps; });
   return taps;
 }
 

@@ -12,6 +12,21 @@ using namespace compueye;
 using hal::ErrorCode;
 using recon::Response;
 
+TEST_CASE("leaving out rows that are empty shares the entries, leaving out others does not") {
+  const Response a = Response::from_csr(4, 2, {0, 1, 1, 3, 3}, {0, 0, 1}, {1.0, 2.0, 3.0}).value();
+  const Response seeing = a.select_rows(a.seeing_rows());
+  CHECK(seeing.values().data() == a.values().data());
+  CHECK(seeing.rows() == 2);
+  CHECK(seeing.row_sums() == std::vector<double>{1.0, 5.0});
+  CHECK(seeing.squared_norm() == a.squared_norm());
+  for (const std::vector<std::int32_t>& rows : {std::vector<std::int32_t>{2}, {2, 0}, {0, 1}}) {
+    const Response some = a.select_rows(rows);
+    CHECK(some.values().data() != a.values().data());
+    CHECK(some.rows() == static_cast<int>(rows.size()));
+  }
+  CHECK(a.select_rows(std::vector<std::int32_t>{2, 0}).row_sums() == std::vector<double>{5.0, 1.0});
+}
+
 TEST_CASE("a response refuses what is not a matrix") {
   CHECK(Response::from_dense(0, 3, {}).error().code == ErrorCode::out_of_range);
   CHECK(Response::from_dense(2, 2, {1, 2, 3}).error().code == ErrorCode::mismatch);

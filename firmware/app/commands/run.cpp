@@ -18,6 +18,7 @@
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/operating_points/deadline_choice.hpp"
+#include "firmware/operating_points/machine.hpp"
 #include "firmware/operating_points/point_choice.hpp"
 #include "firmware/operating_points/point_ladder.hpp"
 #include "firmware/operating_points/stored_points.hpp"
@@ -124,6 +125,7 @@ Result<void> BoardRun::make_eye() {
     one.forget_modes();
   }
   report_.setup_s = static_cast<double>(session_.clock().now_ns() - begin_ns) / 1e9;
+  report_.setup_peak_bytes = peak_memory_bytes();
   return {};
 }
 

@@ -139,7 +139,7 @@ void tell_eye(Figures& f, bool lambda_by_rule) {
   f.tell(
       ", rho {operating_point.rho:3}\n"
       "set up in {setup_s:duration}, factor {factor}; memory: workspace {memory.workspace_bytes:bytes}, tables "
-      "{memory.table_bytes:bytes}\n");
+      "{memory.table_bytes:bytes}, set-up {memory.setup_peak_bytes:bytes} at its peak\n");
 }
 
 /// "stepped down 2 times and up once; frames of ..."
@@ -244,7 +244,8 @@ Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& 
             {"operating_point", point_figures(eye)},
             {"factor", name(eye.factor_origin())},
             {"memory", Figures{{"workspace_bytes", eye.reconstructor().required_bytes()},
-                               {"table_bytes", eye.reconstructor().table_bytes()}}},
+                               {"table_bytes", eye.reconstructor().table_bytes()},
+                               {"setup_peak_bytes", report.setup_peak_bytes}}},
             {"setup_s", report.setup_s},
             {"ending", name(s.ending)},
             {"frames", figures_of(s.frames)},

@@ -34,6 +34,7 @@ struct RunReport {
   std::uint64_t seed = 0;
   bool lossless = false;
   double setup_s = 0.0;
+  std::uint64_t setup_peak_bytes = 0;      ///< the most memory of the process until its first frame
   std::optional<DeadlineChoice> deadline;  ///< by trial
   std::optional<LadderRun> ladder;         ///< by stored points
   RunSummary summary;

@@ -13,6 +13,9 @@ TEST_CASE("the 80x80 eye shows line art as well as promised, far better than a c
   CHECK(json["scene"] == "line-art");
   CHECK(json["eye"]["blind_ommatidia"] == 1836);
   CHECK(json["operating_point"]["lambda_by_rule"] == true);
+  // Of which the entries of A are 108 MB, held once.
+  CHECK(json["memory"]["setup_peak_bytes"].get<double>() <= 200e6);
+  CHECK(json["memory"]["setup_peak_bytes"].get<double>() >= 108e6);
   CHECK(json["quality"]["nmse"].get<double>() <= 0.15);
   CHECK(json["conventional"]["nmse"].get<double>() >= 0.35);
   CHECK(json["conventional"]["nmse"].get<double>() <= 0.6);
