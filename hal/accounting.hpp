@@ -27,6 +27,9 @@ struct FrameAccount {
   std::uint64_t produced = 0;
   std::uint64_t delivered = 0;
   std::array<std::uint64_t, drop_reason_count> dropped{};
+  /// Of the dropped ones, those that nobody has counted: the device forgot or could not be asked, and so many follow
+  /// from its rate and the time.
+  std::uint64_t estimated = 0;
 
   std::uint64_t& drops(DropReason reason) noexcept { return dropped[static_cast<std::size_t>(reason)]; }
   [[nodiscard]] std::uint64_t drops(DropReason reason) const noexcept {

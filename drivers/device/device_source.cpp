@@ -76,7 +76,7 @@ hal::Result<void> DeviceSource::do_start() {
   reader_->begin_run();
   extent_ = {};
   clock_anew_ = false;
-  stream_base_ = stream_overruns_ = 0;
+  stream_base_ = stream_overruns_ = estimated_ = 0;
   auto reached = get_to(MachineState::read, settings_.start_limit_ns);
   machine_.run_with(settings_.recovery_limit_ns);
   run_config_id_ = configuration_.config_id;
@@ -120,7 +120,10 @@ std::optional<hal::SampleBlock> DeviceSource::read_stream(std::int64_t deadline_
   const std::int64_t silent_ns = *quiet_since_ns_ + silence_ns_;
   const auto got = transport_->read(chunk_, std::min(deadline_ns, silent_ns));
   waited_ = clock_.now_ns() - now_ns > configuration_.period_ns() / 16;
-  if (got) {
+  if (got && extent_.unseen(clock_.now_ns()) >= reader_->most_ahead()) {
+    fail(Failure::late_reader,
+         {hal::ErrorCode::timeout, serial_, "nobody read it for so long that frames have no number"});
+  } else if (got) {
     held_bytes_ = std::min(*got, chunk_.size());
     bytes_since_frame_ += held_bytes_;
     times_held_ = 0;
@@ -159,7 +162,8 @@ void DeviceSource::saw_frame(hal::SampleBlock& block) noexcept {
 void DeviceSource::hand_over(std::int64_t deadline_ns) {
   constexpr int most_times_held = 4;
   if (reader_->needs_time() && !ask_time(deadline_ns) && ++times_held_ < most_times_held) return;
-  reader_->push(std::span<const std::byte>(chunk_).first(std::exchange(held_bytes_, 0)));
+  reader_->push(std::span<const std::byte>(chunk_).first(std::exchange(held_bytes_, 0)),
+                extent_.most_exposed(clock_.now_ns()));
 }
 
 /// False when the deadline came first. Frames without a time are better than none: a device that does not answer is
@@ -221,10 +225,13 @@ void DeviceSource::close_stream(const StreamExtent::Frames& frames, hal::DropRea
   const std::uint64_t overrun = std::min(missing, frames.overrun > known ? frames.overrun - known : 0);
   reader_->lose(overrun, hal::DropReason::device_overrun);
   reader_->lose(missing - overrun, reason);
+  if (frames.estimated) estimated_ += missing;
 }
 
 hal::FrameAccount DeviceSource::do_account() const noexcept {
-  return reader_->account();
+  hal::FrameAccount account = reader_->account();
+  account.estimated = estimated_;
+  return account;
 }
 
 FailureCounters DeviceSource::failures() const noexcept {

@@ -131,6 +131,7 @@ class DeviceSource final : public hal::SampleSource {
   StreamExtent extent_;
   std::uint64_t stream_base_ = 0;      // the run's number of the stream's frame 0
   std::uint64_t stream_overruns_ = 0;  // counted before this stream
+  std::uint64_t estimated_ = 0;        // of the dropped
   hal::DropReason lost_as_ = hal::DropReason::transport_gap;
   std::int64_t silence_ns_ = 0;
   std::size_t babble_bytes_ = 0;                // that hold a frame if anything does

@@ -30,6 +30,7 @@ namespace compueye::device {
   ROW(silence, "no frame for too long, and no bytes either")                                      \
   ROW(stream_failed, "the stream's endpoint halted, or the transport failed")                     \
   ROW(babble, "bytes without end and no frame in them")                                           \
+  ROW(late_reader, "nobody read for longer than frame numbers can tell")                          \
   /* Its bytes */                                                                                 \
   ROW(crc_error, "packets or reports whose CRC is wrong")                                         \
   ROW(garbage, "magic numbers before nonsense, reports of no known kind")                         \
@@ -41,6 +42,7 @@ namespace compueye::device {
   ROW(other_config, "left over from another configuration, or of a device that has started anew") \
   ROW(incomplete_frame, "frames delivered with channels missing")                                 \
   ROW(bad_code, "codes beyond the depth, made invalid")                                           \
+  ROW(wrong_number, "samples of a frame that the time since START had no room for")               \
   ROW(doubtful_time, "frames whose time is not to be trusted")                                    \
   /* What was done */                                                                             \
   ROW(restart, "the stream was reset")                                                            \

@@ -2,18 +2,22 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+
+#include "drivers/protocol/requests.hpp"
 
 namespace compueye::device {
 namespace {
 
 constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 
-/// STATUS counts modulo 2^32 and may be wrong: the number near `estimate`, or `estimate` when there is none near it.
-std::uint64_t near_estimate(std::uint32_t counted, std::uint64_t estimate) noexcept {
-  const auto ahead = static_cast<std::int32_t>(counted - static_cast<std::uint32_t>(estimate));
-  const auto most = static_cast<std::int64_t>(std::min<std::uint64_t>(estimate, 1U << 30U) + 1024);
-  if (ahead > most || -std::int64_t{ahead} > static_cast<std::int64_t>(estimate)) return estimate;
-  return estimate + static_cast<std::uint64_t>(std::int64_t{ahead});
+/// STATUS counts modulo 2^32: the number near `estimate`; nothing when there is none, 0 .. `most`.
+std::optional<std::uint64_t> near_estimate(std::uint32_t counted, std::uint64_t estimate, std::uint64_t most) noexcept {
+  const std::int64_t ahead = static_cast<std::int32_t>(counted - static_cast<std::uint32_t>(estimate));
+  if (-ahead > static_cast<std::int64_t>(estimate)) return std::nullopt;
+  const std::uint64_t number = estimate + static_cast<std::uint64_t>(ahead);
+  if (number > most) return std::nullopt;
+  return number;
 }
 
 }  // namespace
@@ -56,30 +60,47 @@ void StreamExtent::begin(std::uint32_t config_id, const protocol::Status& before
                          std::int64_t period_ns) noexcept {
   open_ = true;
   idle_ = false;
+  come_ = 0;
+  period_ns_ = std::max<std::int64_t>(period_ns, 1);
   config_id_ = config_id;
   before_ = before;
   gone_ns_ = stopped_ns_ = quiet_ns_ = never;
   clock_.begin(start_ns, period_ns);
 }
 
+std::uint64_t StreamExtent::unseen(std::int64_t now_ns) const noexcept {
+  const std::uint64_t exposed = clock_.exposed_before(now_ns);
+  return exposed > come_ ? exposed - come_ : 0;
+}
+
+std::uint64_t StreamExtent::most_exposed(std::int64_t now_ns) const noexcept {
+  const auto of_latency = static_cast<std::uint64_t>(protocol::control_deadline_ns / period_ns_);
+  return clock_.exposed_before(now_ns) + 2 + of_latency + unseen(now_ns) / 16;
+}
+
 StreamExtent::Frames StreamExtent::close(const protocol::Status& status, std::int64_t now_ns) noexcept {
   open_ = false;
   if (status.boot_count != before_.boot_count) {
     const auto up_ns = static_cast<std::int64_t>(std::min(status.now_ns, static_cast<std::uint64_t>(never)));
-    return {clock_.exposed_before(std::min({gone_ns_, stopped_ns_, now_ns - up_ns})), 0};
+    std::int64_t end_ns = std::min({gone_ns_, stopped_ns_, now_ns - up_ns});
+    const bool once = status.boot_count == before_.boot_count + 1;
+    if (!once && end_ns != gone_ns_) end_ns = std::min(end_ns, quiet_ns_);
+    return {clock_.exposed_before(end_ns), 0, true};
   }
   // The counters of the stream before: START did not arrive.
   const bool untouched = status.frames == before_.frames && status.last_t_ns == before_.last_t_ns;
   if (status.config_id != config_id_ || untouched) return {};
-  return {near_estimate(status.frames, clock_.exposed_before(now_ns)), status.overruns};
+  const std::uint64_t estimate = clock_.exposed_before(now_ns);
+  const auto counted = near_estimate(status.frames, estimate, most_exposed(now_ns));
+  return {counted.value_or(estimate), status.overruns, !counted};
 }
 
 StreamExtent::Frames StreamExtent::close(std::int64_t now_ns) noexcept {
   open_ = false;
   for (const std::int64_t end_ns : {std::min(gone_ns_, idle_ ? never : stopped_ns_), quiet_ns_}) {
-    if (end_ns != never) return {clock_.exposed_before(end_ns), 0};
+    if (end_ns != never) return {clock_.exposed_before(end_ns), 0, true};
   }
-  return {clock_.exposed_before(now_ns), 0};
+  return {clock_.exposed_before(now_ns), 0, true};
 }
 
 }  // namespace compueye::device

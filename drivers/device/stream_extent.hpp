@@ -38,12 +38,15 @@ class ExposureClock {
 /// Asked after the stream has ended, a device that has not started anew knows (STATUS: `frames`, `overruns`). One that
 /// has, or that was plugged in again, has forgotten: the frames are then those that ExposureClock gives until it
 /// started anew (its clock is 0 there), was stopped or was seen to be gone, whichever was earliest. One that can no
-/// longer be asked is taken to have stopped when its stream did.
+/// longer be asked is taken to have stopped when its stream did; so is one that has started anew more than once without
+/// having been seen to be gone, since nobody knows when it did first. Those numbers are estimates, and so is one that
+/// stands for a count of the device that time has no room for.
 class StreamExtent {
  public:
   struct Frames {
     std::uint64_t made = 0;
     std::uint64_t overrun = 0;  ///< of them, as far as the device told
+    bool estimated = false;     ///< by rate and time: the device did not tell
   };
 
   /// START was sent; `before` is the last STATUS before it.
@@ -51,8 +54,14 @@ class StreamExtent {
              std::int64_t period_ns) noexcept;
   /// As ExposureClock::saw_frame().
   void saw_frame(std::uint64_t device_frame, std::int64_t now_ns, bool waited_for) noexcept {
+    come_ = device_frame + 1;
     clock_.saw_frame(device_frame, now_ns, waited_for);
   }
+  /// Frames that have been exposed since the last one that came.
+  [[nodiscard]] std::uint64_t unseen(std::int64_t now_ns) const noexcept;
+  /// More frames than these the device cannot have exposed: of those that the clock gives, 2 more, those of 100 ms (a
+  /// transport that became faster) and 1/16 of the unseen ones (drift).
+  [[nodiscard]] std::uint64_t most_exposed(std::int64_t now_ns) const noexcept;
   /// The device was seen to be gone.
   void saw_gone(std::int64_t t_ns) noexcept {
     if (!idle_) gone_ns_ = std::min(gone_ns_, t_ns);
@@ -73,6 +82,8 @@ class StreamExtent {
  private:
   bool open_ = false;
   bool idle_ = false;
+  std::uint64_t come_ = 0;  // those before the frame after the last that came
+  std::int64_t period_ns_ = 1;
   std::uint32_t config_id_ = 0;
   protocol::Status before_;
   std::int64_t gone_ns_ = 0, stopped_ns_ = 0, quiet_ns_ = 0;

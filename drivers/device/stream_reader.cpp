@@ -24,7 +24,11 @@ class PacketReader final : public StreamReader {
     packets_.reset();
     frames_.begin_stream(config_id, period_ns);
   }
-  void push(std::span<const std::byte> chunk) noexcept override { packets_.feed(chunk); }
+  [[nodiscard]] std::uint64_t most_ahead() const noexcept override { return std::uint64_t{1} << 31U; }
+  void push(std::span<const std::byte> chunk, std::uint64_t exposed) noexcept override {
+    frames_.expect_below(exposed);
+    packets_.feed(chunk);
+  }
   [[nodiscard]] std::optional<hal::SampleBlock> take() noexcept override {
     for (;;) {
       if (auto block = frames_.take()) return block;
@@ -49,6 +53,7 @@ class PacketReader final : public StreamReader {
     failures[Failure::other_config] += frames.other_config;
     failures[Failure::incomplete_frame] += frames.incomplete_frames;
     failures[Failure::bad_code] += frames.bad_codes;
+    failures[Failure::wrong_number] += frames.wrong_number;
   }
 
  private:
@@ -70,7 +75,11 @@ class ReportReader final : public StreamReader {
     next_frame_ = reports_.account().produced;
     needs_time_ = true;
   }
-  void push(std::span<const std::byte> chunk) noexcept override { reports_.push(chunk); }
+  [[nodiscard]] std::uint64_t most_ahead() const noexcept override { return std::uint64_t{1} << 15U; }
+  void push(std::span<const std::byte> chunk, std::uint64_t exposed) noexcept override {
+    reports_.expect_below(exposed);
+    reports_.push(chunk);
+  }
   [[nodiscard]] std::optional<hal::SampleBlock> take() noexcept override {
     const auto block = reports_.take();
     if (!block) return block;
@@ -100,6 +109,7 @@ class ReportReader final : public StreamReader {
     failures[Failure::other_config] += reports.other_config;
     failures[Failure::incomplete_frame] += reports.incomplete_frames;
     failures[Failure::bad_code] += reports.bad_codes;
+    failures[Failure::wrong_number] += reports.wrong_number;
   }
 
  private:

@@ -19,7 +19,7 @@ namespace compueye::device {
 /// Bytes of the stream in, whole frames out: what packets and reports have in common. Nothing allocates after
 /// construction.
 ///
-///   reader.push(chunk);                          // which must live until take() has returned nothing
+///   reader.push(chunk, exposed);                 // which must live until take() has returned nothing
 ///   while (const auto block = reader.take()) ...
 class StreamReader {
  public:
@@ -32,7 +32,10 @@ class StreamReader {
   virtual void begin_run() noexcept = 0;
   /// The device was started with configuration `config_id`; frame numbers go on.
   virtual void begin_stream(std::uint32_t config_id, std::int64_t period_ns) noexcept = 0;
-  virtual void push(std::span<const std::byte> chunk) noexcept = 0;
+  /// How far ahead of the last frame that came a number can be told: half of where it goes round.
+  [[nodiscard]] virtual std::uint64_t most_ahead() const noexcept = 0;
+  /// `exposed`: as many frames as the device can have exposed in this stream; none of a higher number is taken.
+  virtual void push(std::span<const std::byte> chunk, std::uint64_t exposed) noexcept = 0;
   /// The next frame; valid until the next call of anything.
   [[nodiscard]] virtual std::optional<hal::SampleBlock> take() noexcept = 0;
   /// Drops what is in hand as `reason`.

@@ -46,9 +46,9 @@ hal::Result<void> check_settings(const EmulatorSettings& settings) {
 
 std::string_view name(FaultKind kind) noexcept {
   constexpr std::array<std::string_view, fault_kind_count> names{
-      "silence",       "control_silence", "stall_stream",      "stall_control", "short_read", "bit_error",
-      "wrong_echo",    "unplug",          "replug_other",      "clock_jump",    "reboot",     "babble",
-      "other_version", "lose_packets",    "duplicate_packets", "overrun"};
+      "silence",       "control_silence", "stall_stream",      "stall_control", "short_read",  "bit_error",
+      "wrong_echo",    "unplug",          "replug_other",      "clock_jump",    "reboot",      "babble",
+      "other_version", "lose_packets",    "duplicate_packets", "overrun",       "lose_answers"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -94,6 +94,7 @@ void DeviceEmulator::advance(std::int64_t now_ns) {
       come_back(next_ns);
     } else {
       expose(frame_ns);
+      overrun_until(std::min({fault_ns.value_or(forever), back_ns, now_ns}));
     }
   }
   now_ns_ = std::max(now_ns_, now_ns);
@@ -136,6 +137,9 @@ void DeviceEmulator::begin(const EmulatorFault& fault, std::int64_t now_ns) {
       return;
     case FaultKind::overrun:
       now_wrong_.frames_to_overrun += fault.count;
+      return;
+    case FaultKind::lose_answers:
+      now_wrong_.lost_answers += fault.count;
       return;
     case FaultKind::control_silence:
       now_wrong_.control_silent_until_ns = until(now_ns, fault.duration_ns);
@@ -204,6 +208,7 @@ void DeviceEmulator::describe_anew() {
 void DeviceEmulator::boot(std::int64_t now_ns) noexcept {
   stop();
   ++truth_.boots;
+  if (descriptor_.serial == settings_.descriptor.serial) ++boot_count_;  // another device counts its own
   boot_ns_ = now_ns;
   clock_step_ns_ = 0;
   clock_was_set_ = false;

@@ -124,6 +124,7 @@ class DeviceEmulator {
     bool control_stalled = false;
     std::uint64_t stalled_requests = 0;
     std::uint64_t short_packets = 0, bit_errors = 0, lost_packets = 0, duplicates = 0, wrong_echoes = 0;
+    std::uint64_t lost_answers = 0;
     std::uint64_t frames_to_overrun = 0;
   };
 
@@ -143,6 +144,7 @@ class DeviceEmulator {
 
   // Requests: emulator_control.cpp
   [[nodiscard]] std::optional<Outcome> unreachable(std::int64_t now_ns) noexcept;
+  Transfer delivered(Transfer answer) noexcept;
   Transfer answer(std::int64_t now_ns, Request request, std::span<const std::byte> payload, std::span<std::byte> reply);
   Transfer refuse(StatusError why) noexcept;
   Transfer set_configuration(std::span<const std::byte> payload);
@@ -156,6 +158,7 @@ class DeviceEmulator {
 
   // Frames: emulator_frames.cpp
   void expose(std::int64_t ready_ns);
+  void overrun_until(std::int64_t t_ns) noexcept;
   void send_packets(std::int64_t ready_ns, std::uint64_t frame, std::int64_t start_ns);
   void send_reports(std::int64_t ready_ns, std::int64_t start_ns);
   void send_events(std::int64_t ready_ns, const FrameHeader& header);
@@ -187,6 +190,7 @@ class DeviceEmulator {
   std::string comes_back_as_;
   std::uint64_t attachment_ = 1;
   std::int64_t boot_ns_ = 0;  // when the firmware started
+  std::uint32_t boot_count_ = 0;
   std::int64_t clock_step_ns_ = 0;
   bool clock_was_set_ = false;
 

@@ -24,7 +24,13 @@ DeviceEmulator::Transfer DeviceEmulator::control(std::int64_t now_ns, std::uint8
                                                  std::span<const std::byte> payload, std::span<std::byte> reply) {
   advance(now_ns);
   if (const auto why = unreachable(now_ns)) return {*why, 0};
-  return answer(now_ns, static_cast<Request>(request), payload, reply);
+  return delivered(answer(now_ns, static_cast<Request>(request), payload, reply));
+}
+
+DeviceEmulator::Transfer DeviceEmulator::delivered(Transfer answer) noexcept {
+  if (now_wrong_.lost_answers == 0) return answer;
+  --now_wrong_.lost_answers;
+  return {Outcome::nothing, 0};
 }
 
 DeviceEmulator::Transfer DeviceEmulator::refuse(StatusError why) noexcept {
@@ -154,7 +160,7 @@ Status DeviceEmulator::status(std::int64_t now_ns) const noexcept {
   status.illum = illum(now_ns);
   status.last_error = last_error_;
   status.config_id = configuration_.config_id;
-  status.boot_count = static_cast<std::uint32_t>(truth_.boots);
+  status.boot_count = boot_count_;
   status.temperature = 2500;
   status.fifo_permille = static_cast<std::uint16_t>(fifo_.used() * 1000 / fifo_.capacity());
   status.frames = static_cast<std::uint32_t>(frame_);
@@ -182,10 +188,11 @@ DeviceEmulator::Transfer DeviceEmulator::set_feature(std::int64_t now_ns, std::s
           request != Request::reset_pipes) {
         return refuse(StatusError::unknown_request);
       }
-      return answer(now_ns, request, body.subspan(1, request == Request::set_config ? Configuration::bytes : 0), {});
+      return delivered(
+          answer(now_ns, request, body.subspan(1, request == Request::set_config ? Configuration::bytes : 0), {}));
     }
     case HidFeature::illumination:
-      return answer(now_ns, Request::set_illum, body.first(Illumination::bytes), {});
+      return delivered(answer(now_ns, Request::set_illum, body.first(Illumination::bytes), {}));
     case HidFeature::counters:
       hid_nonce_ = load_little<std::uint32_t>(body.data());
       return {Outcome::done, hid_report_bytes};
@@ -227,7 +234,7 @@ DeviceEmulator::Transfer DeviceEmulator::get_feature(std::int64_t now_ns, std::u
     default:
       return refuse(StatusError::unknown_request);
   }
-  return {inner.outcome, inner.outcome == Outcome::done ? hid_report_bytes : 0};
+  return delivered({inner.outcome, inner.outcome == Outcome::done ? hid_report_bytes : 0});
 }
 
 }  // namespace compueye::protocol

@@ -27,8 +27,9 @@ enum class FaultKind : std::uint8_t {
   lose_packets,       ///< the next `count` packets (reports) are lost on the way
   duplicate_packets,  ///< the next `count` packets (reports) come twice
   overrun,            ///< the next `count` frames do not fit the device's memory
+  lose_answers,       ///< the next `count` requests are carried out, and the host gets no answer
 };
-inline constexpr std::size_t fault_kind_count = static_cast<std::size_t>(FaultKind::overrun) + 1;
+inline constexpr std::size_t fault_kind_count = static_cast<std::size_t>(FaultKind::lose_answers) + 1;
 
 [[nodiscard]] std::string_view name(FaultKind kind) noexcept;
 

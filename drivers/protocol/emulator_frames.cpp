@@ -44,6 +44,23 @@ void DeviceEmulator::expose(std::int64_t ready_ns) {
   clock_was_set_ = false;
 }
 
+/// Nobody reads, so every frame that is ready before `t_ns` fares like the last one: a day of it takes no longer than a
+/// frame.
+void DeviceEmulator::overrun_until(std::int64_t t_ns) noexcept {
+  const auto waits_for_a_frame = [](const Scripted& each) { return !each.begun && each.fault.at_frame; };
+  if (state_ != DeviceState::streaming || now_wrong_.frames_to_overrun > 0 || frame_ready_ns() >= t_ns ||
+      frame_fits() || std::any_of(faults_.begin(), faults_.end(), waits_for_a_frame)) {
+    return;
+  }
+  const auto frames = static_cast<std::uint64_t>((t_ns - frame_ready_ns() - 1) / period_ns_ + 1);
+  frame_ += frames;
+  dropped_ += static_cast<std::uint32_t>(frames);
+  overrun_pending_ = true;
+  truth_.frames += frames;
+  truth_.frames_overrun += frames;
+  if (stream_config_id_ == 0) truth_.frames_unasked += frames;
+}
+
 void DeviceEmulator::send_packets(std::int64_t ready_ns, std::uint64_t frame, std::int64_t start_ns) {
   FrameHeader header;
   header.version = descriptor_.version;

@@ -39,6 +39,10 @@ void FrameAssembler::push(const Packet& packet) noexcept {
     return note_other(packet);
   }
   const std::int64_t device_frame = frames_.at(packet.header.frame);
+  if (builder_.is_impossible(device_frame)) {
+    ++counters_.wrong_number;
+    return;
+  }
   // What this packet tells about losses concerns the frames behind the open one.
   if (builder_.ends_open(device_frame)) finish();
   builder_.sequence().saw_packet(packet);

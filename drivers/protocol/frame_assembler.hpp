@@ -22,6 +22,7 @@ struct AssemblerCounters {
   std::uint64_t unknown_types = 0;      ///< packets of a newer minor version
   std::uint64_t incomplete_frames = 0;  ///< finished with channels missing
   std::uint64_t bad_codes = 0;          ///< codes beyond the depth, made invalid
+  std::uint64_t wrong_number = 0;       ///< parts of frames that cannot have been exposed yet
 };
 
 /// Packets in, whole frames out. A frame may come in several packets (first_ch, n_ch) in any order; it is finished when
@@ -43,6 +44,9 @@ class FrameAssembler {
   /// The device was started with configuration `config_id`: its counters are at 0 and only packets with this id are
   /// used. Frame numbers go on behind those of the stream before. `period_ns` as in FrameBuilder::begin_stream().
   void begin_stream(std::uint32_t config_id, std::int64_t period_ns = 0) noexcept;
+
+  /// As FrameBuilder::expect_below().
+  void expect_below(std::uint64_t device_frames) noexcept { builder_.expect_below(device_frames); }
 
   /// Takes a packet's samples. Blocks returned by take() end here.
   void push(const Packet& packet) noexcept;

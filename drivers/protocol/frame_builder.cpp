@@ -26,6 +26,7 @@ void FrameBuilder::begin_run() noexcept {
 void FrameBuilder::begin_stream(std::int64_t period_ns) noexcept {
   period_ns_ = period_ns;
   same_stream_ = false;
+  frames_below_ = std::numeric_limits<std::uint64_t>::max();
   sequence_.begin_stream();
 }
 
@@ -114,9 +115,10 @@ bool FrameBuilder::time_fits(const hal::SampleBlock& block) const noexcept {
   if (!has_last_) return true;
   if (block.t_ns <= last_t_ns_) return false;
   if (!same_stream_ || period_ns_ <= 0) return true;
-  const double expected = static_cast<double>(block.frame - last_frame_) * static_cast<double>(period_ns_);
+  const auto period = static_cast<double>(period_ns_);
+  const double expected = static_cast<double>(block.frame - last_frame_) * period;
   const double step = static_cast<double>(block.t_ns) - static_cast<double>(last_t_ns_);
-  return std::abs(step - expected) < 0.25 * expected;
+  return std::abs(step - expected) < 0.25 * period + 0.02 * (expected - period);
 }
 
 }  // namespace compueye::protocol

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,8 +28,8 @@ class FrameBuilder {
   FrameBuilder(int channels, int bits);
 
   void begin_run() noexcept;
-  /// `period_ns`: between frames as configured; a time step a quarter or more off what the frame numbers say makes
-  /// flags.time_ok false. 0: only a step that is not forwards does.
+  /// `period_ns`: between frames as configured; a time step off what the frame numbers say, by a quarter of a period
+  /// and 2 % of a gap, makes flags.time_ok false. 0: only a step that is not forwards does.
   void begin_stream(std::int64_t period_ns) noexcept;
   /// Taken blocks end here. Blocks that were not taken are dropped as superseded.
   void release() noexcept;
@@ -40,6 +41,11 @@ class FrameBuilder {
   [[nodiscard]] bool ends_open(std::int64_t device_frame) const noexcept;
   /// Has its fate already, or lies before the open frame.
   [[nodiscard]] bool is_late(std::int64_t device_frame) const noexcept;
+  /// Frames from this number of the stream on cannot have been exposed yet; until begin_stream(), which knows of none.
+  void expect_below(std::uint64_t device_frames) noexcept { frames_below_ = device_frames; }
+  [[nodiscard]] bool is_impossible(std::int64_t device_frame) const noexcept {
+    return device_frame >= 0 && static_cast<std::uint64_t>(device_frame) >= frames_below_;
+  }
   /// Begins a frame that is not late; there is none open.
   void open(std::int64_t device_frame) noexcept;
   /// Whether any of these channels came already.
@@ -93,6 +99,7 @@ class FrameBuilder {
   FrameConditions taken_;
   SequenceAccount sequence_;
 
+  std::uint64_t frames_below_ = std::numeric_limits<std::uint64_t>::max();
   std::int64_t period_ns_ = 0;
   std::int64_t last_t_ns_ = 0;
   std::uint64_t last_frame_ = 0;

@@ -33,9 +33,8 @@ void HidAssembler::begin_stream(std::uint32_t config_id, std::int64_t period_ns)
 void HidAssembler::set_time(const Status& status) noexcept {
   constexpr std::uint64_t latest = std::numeric_limits<std::int64_t>::max();
   if (status.frames == 0 || status.last_t_ns > latest) return;
-  // STATUS counts modulo 2^32 and reports modulo 2^16: the frame near the last one that came.
-  const auto last = static_cast<std::uint16_t>(status.frames - 1);
-  time_frame_ = frames_.at(last);
+  // STATUS counts modulo 2^32: the frame near the last one that came.
+  time_frame_ = frames_.at(status.frames - 1);
   time_ns_ = static_cast<std::int64_t>(status.last_t_ns);
   has_time_ = true;
 }
@@ -84,6 +83,10 @@ void HidAssembler::push(std::span<const std::byte> bytes) noexcept {
   const ParsedHidReport parsed = parse_hid_report(bytes);
   if (!usable(parsed)) return;
   const std::int64_t device_frame = frames_.at(parsed.report.frame);
+  if (builder_.is_impossible(device_frame)) {
+    ++counters_.wrong_number;
+    return;
+  }
   if (builder_.ends_open(device_frame)) finish();
   push_part(parsed.report, device_frame);
 }
@@ -97,6 +100,7 @@ void HidAssembler::push_part(const HidReport& report, std::int64_t device_frame)
   if (!builder_.is_open()) {
     SequenceAccount& sequence = builder_.sequence();
     const std::uint64_t missing = sequence.run_frame(static_cast<std::uint64_t>(device_frame)) - sequence.next_frame();
+    after_gap_ = missing > 0;
     if (report.has(hid_flag::overrun)) {
       sequence.saw_device_drops(missing);
     } else {
@@ -134,7 +138,7 @@ void HidAssembler::set_block_time(std::int64_t device_frame) noexcept {
   const bool fits = !__builtin_mul_overflow(device_frame - time_frame_, period_ns_, &since) &&
                     !__builtin_add_overflow(time_ns_, since, &block.t_ns);
   if (!fits) block.t_ns = 0;
-  block.flags.time_ok = fits && has_time_;
+  block.flags.time_ok = fits && has_time_ && !after_gap_;
 }
 
 }  // namespace compueye::protocol

@@ -25,10 +25,12 @@ struct HidCounters {
   std::uint64_t other_config = 0;       ///< the tag of another configuration
   std::uint64_t incomplete_frames = 0;  ///< finished with channels missing
   std::uint64_t bad_codes = 0;          ///< codes beyond the depth, made invalid
+  std::uint64_t wrong_number = 0;       ///< parts of frames that cannot have been exposed yet
 };
 
 /// HID input reports in, whole frames out: the counterpart of FrameAssembler, used the same way. Reports carry neither
-/// time nor a sequence number. Times follow from set_time(); missing frames are device_overrun when the frame after
+/// time nor a sequence number. Times follow from set_time(), and are doubtful behind a gap, in which the clock may have
+/// been set; missing frames are device_overrun when the frame after
 /// them says so, corrupt as far as damaged reports came in between, transport_gap otherwise. A frame is finished when
 /// all its parts are there or a part of a later frame comes.
 ///
@@ -44,6 +46,9 @@ class HidAssembler {
   /// Places the device's frames on its clock, from a STATUS of this stream. Until the first call, and when the device
   /// has made no frame yet, times count from frame 0 at 0 ns and flags.time_ok is false.
   void set_time(const Status& status) noexcept;
+
+  /// As FrameBuilder::expect_below().
+  void expect_below(std::uint64_t device_frames) noexcept { builder_.expect_below(device_frames); }
 
   /// Takes one report as read(): exactly 64 bytes, its id first. Blocks returned by take() end here.
   void push(std::span<const std::byte> bytes) noexcept;
@@ -67,6 +72,7 @@ class HidAssembler {
   std::int64_t period_ns_ = 0;
   Unwrapped<std::uint16_t> frames_;
   bool has_time_ = false;
+  bool after_gap_ = false;  // of the open frame
   std::int64_t time_frame_ = 0, time_ns_ = 0;
   HidCounters counters_;
 };

@@ -14,10 +14,13 @@ namespace compueye::protocol {
 template <class T>
 class Unwrapped {
  public:
-  /// Where `value` lies; negative when it is from before the counter's start. Does not move the counter.
-  [[nodiscard]] std::int64_t at(T value) const noexcept {
-    using Signed = std::make_signed_t<T>;
-    return last_ + static_cast<Signed>(static_cast<T>(value - static_cast<T>(last_)));
+  /// Where `value` lies, which may count further than the counter; negative when it is from before the counter's start.
+  /// Does not move the counter.
+  template <class U>
+  [[nodiscard]] std::int64_t at(U value) const noexcept {
+    static_assert(sizeof(U) >= sizeof(T));
+    using Signed = std::make_signed_t<U>;
+    return last_ + static_cast<Signed>(static_cast<U>(value - static_cast<U>(last_)));
   }
   void move_to(std::int64_t value) noexcept { last_ = value; }
 

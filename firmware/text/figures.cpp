@@ -239,6 +239,7 @@ Figures figures_of(const hal::FrameAccount& account) {
   return {{"produced", account.produced},
           {"delivered", account.delivered},
           {"dropped", std::move(dropped)},
+          {"estimated", account.estimated},
           {"balanced", account.balanced()}};
 }
 

@@ -156,7 +156,8 @@ std::string steps_text(const LadderRun& ladder) {
 void tell_frames(Figures& f, const RunReport& report) {
   f.tell(
       "frames: {frames.produced} produced = {frames.delivered} delivered + {frames.dropped:sum} dropped"
-      "[ ({frames.dropped})]; {pacing}; ended: {ending} after {wall_s:duration}\n");
+      "[ ({frames.dropped})][, {frames.estimated} of them by estimate]; {pacing}; ended: {ending} after "
+      "{wall_s:duration}\n");
   if (report.deadline) f.say(report.deadline->sentence() + "\n");
   if (report.ladder) f.say(report.ladder->sentence() + "\n" + steps_text(*report.ladder) + "\n");
   if (report.deadline || report.ladder) f.tell("deadline misses: {deadline.misses} of {frames.delivered}\n");

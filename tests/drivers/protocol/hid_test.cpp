@@ -231,12 +231,16 @@ TEST_CASE("HID: times follow from STATUS, over the turn of the frame counter") {
   status.frames = 6;
   status.last_t_ns = 1'000'000'000;
   assembler.set_time(status);
-  CHECK(time_of(3) == std::pair{std::int64_t{1'000'000'000 - 2 * period_ns}, true});
+  CHECK(time_of(2) == std::pair{std::int64_t{1'000'000'000 - 3 * period_ns}, true});
+  // The clock may have been set in a gap.
+  CHECK(time_of(4) == std::pair{std::int64_t{1'000'000'000 - period_ns}, false});
+  CHECK(time_of(5) == std::pair{std::int64_t{1'000'000'000}, true});
   CHECK(time_of(30000).first == 1'000'000'000 + 29995 * period_ns);
   CHECK(time_of(60000).first == 1'000'000'000 + 59995 * period_ns);
   status.frames = 70001;
   status.last_t_ns = 500'000'000'000;
   assembler.set_time(status);
+  CHECK(time_of(70001).first == 500'000'000'000 + period_ns);
   CHECK(time_of(70002) == std::pair{500'000'000'000 + 2 * period_ns, true});
   status.last_t_ns = 0x7FFFFFFFFFFFFFFFU;
   assembler.set_time(status);

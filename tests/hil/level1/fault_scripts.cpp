@@ -45,6 +45,10 @@ const std::vector<FaultScript> scripts{
      300 * ms},
     {"requests not answered until bus reset",
      [](const FaultMoment& m) { return with_halted_stream(m, {.kind = FaultKind::control_silence}); }},
+    {"answers lost",
+     [](const FaultMoment& m) {
+       return with_halted_stream(m, {.kind = FaultKind::lose_answers, .count = 1 + m.seed % 4});
+     }},
     {"requests not answered, frames come",
      [](const FaultMoment& m) {
        return Faults{{.kind = FaultKind::control_silence, .at_ns = m.at_ns, .duration_ns = 300 * ms}};
