@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -22,6 +23,23 @@ inline constexpr std::uint8_t dark = 1U << 2U;     ///< exposed with every illum
 inline constexpr std::uint8_t time_ok = 1U << 3U;  ///< the device clock runs and has not been set since the last frame
 inline constexpr unsigned config_tag_shift = 4;    ///< the four high bits: config_id modulo 16
 }  // namespace hid_flag
+
+/// What a device answers to "get report descriptor" (USB HID 1.11, 6.2.2): how hosts know its reports.
+inline constexpr std::array<std::uint8_t, 47> hid_report_descriptor{
+    0x06, 0x00, 0xFF,                    // usage page: of the vendor
+    0x09, 0x01,                          // usage 1
+    0xA1, 0x01,                          // collection: application
+    0x15, 0x00,                          // logical minimum 0
+    0x26, 0xFF, 0x00,                    // logical maximum 255
+    0x75, 0x08,                          // report size: 8 bits
+    0x95, 0x3F,                          // report count: 63
+    0x85, 0x01, 0x09, 0x01, 0x81, 0x02,  // report 1: input
+    0x85, 0x02, 0x09, 0x02, 0xB1, 0x02,  // reports 2 to 5: feature
+    0x85, 0x03, 0x09, 0x03, 0xB1, 0x02,  //
+    0x85, 0x04, 0x09, 0x04, 0xB1, 0x02,  //
+    0x85, 0x05, 0x09, 0x05, 0xB1, 0x02,  //
+    0xC0,                                // end of collection
+};
 
 /// One input report of 64 bytes: id, flags, frame u16, part, parts, CRC-16, 56 B payload = 37 codes of 12 bits. The CRC
 /// covers the bytes before it and the payload. Part p carries channels 37 p .. 37 p + 36; unused codes are 0.

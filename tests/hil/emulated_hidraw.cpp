@@ -114,7 +114,7 @@ EmulatedHidraw::Answer EmulatedHidraw::feature(const Transfer& transfer, std::si
 }
 
 EmulatedHidraw::Answer EmulatedHidraw::ioctl(unsigned long request, void* argument) {
-  const auto descriptor = hid_report_descriptor();
+  const auto& descriptor = protocol::hid_report_descriptor;
   if (request == HIDIOCGRDESCSIZE) {
     *static_cast<int*>(argument) = static_cast<int>(descriptor.size());
     return {};
@@ -156,24 +156,6 @@ void EmulatedHidraw::fail_reads(int error, int count) {
 EmulatedHidraw::Counters EmulatedHidraw::counters() {
   const std::lock_guard lock(mutex_);
   return counters_;
-}
-
-std::vector<std::uint8_t> hid_report_descriptor() {
-  std::vector<std::uint8_t> bytes{
-      0x06, 0x00, 0xFF,  // usage page: of the vendor
-      0x09, 0x01,        // usage 1
-      0xA1, 0x01,        // collection: application
-      0x15, 0x00,        // logical minimum 0
-      0x26, 0xFF, 0x00,  // logical maximum 255
-      0x75, 0x08,        // report size: 8 bits
-      0x95, 0x3F,        // report count: 63
-  };
-  for (std::uint8_t id = 1; id <= 5; ++id) {
-    const std::uint8_t item = id == 1 ? 0x81 : 0xB1;  // input or feature
-    bytes.insert(bytes.end(), {0x85, id, 0x09, id, item, 0x02});
-  }
-  bytes.push_back(0xC0);  // end of collection
-  return bytes;
 }
 
 }  // namespace compueye::hil

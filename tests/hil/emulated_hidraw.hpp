@@ -70,7 +70,4 @@ class EmulatedHidraw {
   std::thread poller_;
 };
 
-/// Input report 1 and feature reports 2 to 5, of 63 bytes behind the id.
-[[nodiscard]] std::vector<std::uint8_t> hid_report_descriptor();
-
 }  // namespace compueye::hil

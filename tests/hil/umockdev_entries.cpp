@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "drivers/protocol/hid_report.hpp"
 #include "tests/hil/emulated_cable.hpp"
 #include "tests/hil/emulated_hidraw.hpp"
 
@@ -66,7 +67,8 @@ std::vector<std::string> HidEntry::texts() const {
       begin(paths[1]) + "E: SUBSYSTEM=usb\nE: DEVTYPE=usb_interface\nA: bInterfaceNumber=00\\n\n",
       begin(paths[2]) + "E: SUBSYSTEM=hid\nE: HID_ID=0003:" + padded("%08X", identity.vendor) + ":" +
           padded("%08X", identity.product) + "\nE: HID_NAME=emulated eye\nE: HID_UNIQ=" + serial +
-          "\nH: report_descriptor=" + hex_of(hid_report_descriptor()) + "\n",
+          "\nH: report_descriptor=" +
+          hex_of({protocol::hid_report_descriptor.begin(), protocol::hid_report_descriptor.end()}) + "\n",
       // hidapi finds the HID device through the link.
       begin(paths[3]) + "N: " + name() + "\nE: SUBSYSTEM=hidraw\nE: DEVNAME=/dev/" + name() +
           "\nE: MAJOR=240\nE: MINOR=" + minor + "\nA: dev=240:" + minor + "\\n\nL: device=../../../" + hid_name + "\n",

@@ -218,3 +218,68 @@ TEST_CASE("the emulated transport fails as a real one does") {
   eye.transport.close();
   CHECK(eye.transport.read(bytes, 0).error().code == ErrorCode::usage);
 }
+
+TEST_CASE("flags stand on the packets that the page names: overrun and an untrusted time on all of their frame") {
+  auto settings = eye_settings(&usb_bus);
+  settings.descriptor.most_payload = 48;  // two packets a frame
+  EmulatedEye eye(settings);
+  eye.inject({.kind = FaultKind::overrun, .at_frame = 2, .count = 3});
+  eye.inject({.kind = FaultKind::clock_jump, .at_frame = 8, .value = 1000});
+  REQUIRE(eye.start());
+  PacketStream stream(eye.device.descriptor().packet_limits());
+  std::vector<std::byte> chunk(1U << 20U);
+  int overruns = 0, untrusted = 0, events = 0;
+  const auto look = [&](const Packet& packet) {
+    const FrameHeader& h = packet.header;
+    CAPTURE(h.frame);
+    CHECK(h.has(packet_flag::time_ok) == (h.frame != 8));
+    untrusted += h.has(packet_flag::time_ok) ? 0 : 1;
+    if (h.type == PacketType::data) {
+      CHECK(h.has(packet_flag::overrun) == (h.frame == 5));
+      overruns += h.has(packet_flag::overrun) ? 1 : 0;
+      return;
+    }
+    ++events;
+    CHECK((h.flags & ~packet_flag::time_ok) == 0);
+    CHECK(h.first_ch == 0);
+    CHECK(h.n_ch == 0);
+    CHECK(h.config_id == 1);
+    if (h.frame == 5) CHECK(h.dropped == 3);
+  };
+  for (int n = 0; n < 12; ++n) {
+    eye.clock.advance(10'000'000);
+    const auto got = eye.device.read(eye.clock.now_ns(), chunk);
+    stream.feed(std::span(chunk).first(got.bytes));
+    while (const auto packet = stream.next()) look(*packet);
+  }
+  CHECK(overruns >= 2);
+  CHECK(untrusted == overruns + 1);  // with the event of a clock that was set
+  CHECK(events == 3);                // the greeting, overrun began, clock set
+}
+
+TEST_CASE("what was counted stands in STATUS after STOP, and a page past the end is refused") {
+  for (const Bus* bus : buses) {
+    CAPTURE(bus->name);
+    EmulatedEye eye(eye_settings(bus));
+    REQUIRE(eye.start());
+    eye.clock.advance(105'000'000);
+    const Status before = eye.status().value();
+    REQUIRE(before.frames > 5);
+    REQUIRE(eye.request(Request::stop));
+    const Status after = eye.status().value();
+    CHECK(after.state == DeviceState::configured);
+    CHECK(after.config_id == before.config_id);
+    CHECK(after.frames == before.frames);
+    CHECK(after.packets == before.packets);
+    CHECK(after.last_t_ns == before.last_t_ns);
+    CHECK(after.fifo_permille == 0);
+
+    std::vector<std::byte> page(60), payload(PageRequest::bytes);
+    const std::size_t pages = (serialise(eye.device.descriptor()).value().size() + 59) / 60;
+    store(PageRequest{static_cast<std::uint16_t>(pages - 1), 60}, std::span(payload).first<PageRequest::bytes>());
+    CHECK(eye.request(Request::get_desc, payload, page));
+    store(PageRequest{static_cast<std::uint16_t>(pages), 60}, std::span(payload).first<PageRequest::bytes>());
+    CHECK_FALSE(eye.request(Request::get_desc, payload, page));
+    CHECK(eye.status().value().last_error == StatusError::out_of_limits);
+  }
+}

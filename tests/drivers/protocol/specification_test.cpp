@@ -159,3 +159,75 @@ TEST_CASE("the specification's descriptor and configuration are what the page sa
   CHECK(check_echo(c, page.hex("configuration"), "page"));
   CHECK(check_configuration(c, d));
 }
+
+TEST_CASE("the specification's event is what an encoder makes of what the page says") {
+  const Page page("protocol.md");
+  PacketStream stream({5, 8});
+  stream.feed(page.hex("event"));
+  const auto packet = stream.next();
+  REQUIRE(packet);
+  FrameHeader h;
+  h.type = PacketType::event;
+  h.flags = packet_flag::time_ok;
+  h.seq = 8;
+  h.frame = 4;
+  h.t_ns = 1244567890;
+  h.config_id = 42;
+  h.format = packet->header.format;  // ignored
+  h.illum = 1;
+  h.temperature = 2537;
+  h.payload_bytes = EventPayload::bytes;
+  h.dropped = 3;
+  CHECK(packet->header == h);
+  const EventPayload event = load_event(packet->payload.first<EventPayload::bytes>());
+  CHECK(event.code == EventPayload::overrun_began);
+  CHECK(event.argument == 3);
+  std::vector<std::byte> payload(EventPayload::bytes), encoded(200);
+  store(event, std::span(payload).first<EventPayload::bytes>());
+  encoded.resize(encode_packet(h, payload, encoded));
+  CHECK(encoded == page.hex("event"));
+  const std::map<std::string, unsigned> codes{{"illumination settled", EventPayload::illumination_settled},
+                                              {"overrun began", EventPayload::overrun_began},
+                                              {"clock set", EventPayload::clock_set},
+                                              {"temperature limit", EventPayload::temperature_limit}};
+  std::size_t found = 0;
+  for (const Row& row : page.rows("Events and logs")) {
+    const auto entry = codes.find(row[1]);
+    if (entry == codes.end()) continue;
+    CHECK(number_in(row[0]) == entry->second);
+    ++found;
+  }
+  CHECK(found == codes.size());
+}
+
+TEST_CASE("the specification's report descriptor is that of the code, and its COBS examples hold both ways") {
+  const Page page("protocol.md");
+  const auto described = std::as_bytes(std::span(hid_report_descriptor));
+  CHECK(std::equal(described.begin(), described.end(), page.hex("report-descriptor").begin(),
+                   page.hex("report-descriptor").end()));
+  const auto bytes_of = [](const std::string& cell) {
+    std::vector<std::byte> all;
+    for (std::size_t at = 0; at < cell.size();) {
+      const std::size_t end = std::min(cell.find(", ", at), cell.size());
+      const auto more = bytes_in(cell.substr(at, end - at));
+      all.insert(all.end(), more.begin(), more.end());
+      at = end + 2;
+    }
+    return all;
+  };
+  std::size_t checked = 0, longest = 0;
+  for (const Row& row : page.rows("UART")) {
+    if (row.size() < 2 || row[0] == "data" || row[0].starts_with("-")) continue;
+    CAPTURE(row[0]);
+    const auto data = bytes_of(row[0]), encoded = bytes_of(row[1]);
+    std::vector<std::byte> made(cobs_bytes(data.size())), back(data.size());
+    made.resize(cobs_encode(data, made));
+    CHECK(made == encoded);
+    CHECK(cobs_decode(encoded, back) == data.size());
+    CHECK(back == data);
+    longest = std::max(longest, data.size());
+    ++checked;
+  }
+  CHECK(checked == 6);
+  CHECK(longest > 254);
+}
