@@ -16,6 +16,7 @@ using hal::ErrorCode;
 
 ErrorCode code_of(int error_number) {
   if (error_number == ENOSPC || error_number == EDQUOT || error_number == EFBIG) return ErrorCode::no_space;
+  if (error_number == ETIMEDOUT) return ErrorCode::timeout;
   return error_number == ENOENT || error_number == ENOTDIR ? ErrorCode::not_found : ErrorCode::io;
 }
 
@@ -31,6 +32,10 @@ const char* remedy(int error_number) {
       return "; check the name and its folder";
     case EEXIST:
       return "; recordings are never overwritten, so choose another name or remove it";
+    case ENXIO:
+      return ", nobody reads this pipe; start its reader first";
+    case ETIMEDOUT:
+      return "; whoever reads this pipe takes nothing";
     default:
       return "";
   }

@@ -11,7 +11,8 @@
 
 namespace compueye::recording {
 
-/// An error of the operating system about `path`: no_space (disk full, quota, file size limit), not_found, io; the
+/// An error of the operating system about `path`: no_space (disk full, quota, file size limit), not_found, timeout,
+/// io; the
 /// sentence ends with what the system said.
 [[nodiscard]] hal::Error file_failure(int error_number, const std::string& path, const char* action);
 

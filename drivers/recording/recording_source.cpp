@@ -44,8 +44,9 @@ hal::Result<void> RecordingSource::do_start() {
     return tl::unexpected(std::move(writer.error()));
   }
   writer_ = std::move(*writer);
-  ++runs_;
   ending_ = Ending::stopped;
+  looked_ns_ = 0;
+  now_ns_ = 0;
   recorded_ = skipped_ = refused_ = 0;
   bytes_ = writer_->bytes();
   failed_ = false;
@@ -54,13 +55,21 @@ hal::Result<void> RecordingSource::do_start() {
     thread_ = std::thread([this] { write_waiting(); });
   } catch (const std::system_error& error) {
     source_.stop();
+    writer_->discard();
+    writer_.reset();
     return hal::fail(hal::ErrorCode::io, path_, std::string("no thread to write it: ") + error.what());
   }
+  ++runs_;
   return {};
 }
 
 hal::Result<hal::SampleBlock> RecordingSource::do_read(std::int64_t deadline_ns) {
+  if (settings_.stop_on_failure && failed()) {
+    ending_ = Ending::source_failed;
+    return tl::unexpected(*error_);
+  }
   auto block = source_.read(deadline_ns);
+  look_after_file();
   if (block) {
     keep(*block);
   } else if (block.error().code == hal::ErrorCode::end_of_stream) {
@@ -89,22 +98,33 @@ void RecordingSource::keep(const hal::SampleBlock& block) noexcept {
 }
 
 void RecordingSource::note(hal::Result<void> done) noexcept {
-  if (!done && !error_) error_ = std::move(done.error());
+  if (done || failed_) return;
+  if (!error_) error_ = std::move(done.error());
+}
+
+/// Time passes whether frames come or not, and only who reads knows how much of it: the clock may be a virtual one.
+void RecordingSource::look_after_file() noexcept {
+  const std::int64_t now_ns = clock_.now_ns() - started_ns_;
+  if (settings_.sync_interval_ns <= 0 || now_ns - looked_ns_ < settings_.sync_interval_ns) return;
+  looked_ns_ = now_ns;
+  now_ns_.store(now_ns, std::memory_order_relaxed);
+  waiting_->wake();
 }
 
 void RecordingSource::write_waiting() noexcept {
-  while (const WaitingFrame* const frame = waiting_->oldest()) {
+  while (!waiting_->drained()) {
+    const WaitingFrame* const frame = waiting_->oldest();
     const std::uint64_t refused = refused_.load(std::memory_order_relaxed);
-    auto done = writer_->append(frame->block, frame->arrival_ns, frame->account, frame->skipped + refused);
-    waiting_->done();
-    if (done) {
-      recorded_.store(writer_->frames(), std::memory_order_relaxed);
-      bytes_.store(writer_->bytes(), std::memory_order_relaxed);
-      continue;
-    }
+    auto done = frame != nullptr
+                    ? writer_->append(frame->block, frame->arrival_ns, frame->account, frame->skipped + refused)
+                    : writer_->flush_if_due(now_ns_.load(std::memory_order_relaxed));
+    if (frame != nullptr) waiting_->done();
+    recorded_.store(writer_->frames(), std::memory_order_relaxed);
+    bytes_.store(writer_->bytes(), std::memory_order_relaxed);
+    if (done) continue;
+    if (frame != nullptr) refused_.store(refused + 1, std::memory_order_relaxed);
     note(std::move(done));
-    refused_.store(refused + 1, std::memory_order_relaxed);
-    if (writer_->failed()) failed_.store(true, std::memory_order_relaxed);
+    if (writer_->failed()) failed_.store(true, std::memory_order_release);
   }
 }
 

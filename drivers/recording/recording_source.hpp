@@ -29,13 +29,15 @@ struct RecordingSettings {
   WhenFull when_full = WhenFull::skip;
   std::size_t most_waiting_bytes = 16U << 20U;  ///< in the queue; at least 4 frames fit whatever they take
   std::int64_t sync_interval_ns = RecordingWriter::default_sync_interval_ns;
+  bool stop_on_failure = false;  ///< read() ends with the file's failure; otherwise frames go on without it
 };
 
 /// Another source, every frame of which is also written to a file. What the reader sees is the other source unchanged.
 ///
 /// read() copies the frame into a bounded queue, for which it neither allocates nor waits (except with
 /// WhenFull::wait), and a thread of its own writes. Frames that found the queue full or could not be written are
-/// counted in unrecorded() and in the file. stop() writes what waits and the end block.
+/// counted in unrecorded() and in the file. The file reaches the disk by time, also while no frames come, as long as
+/// somebody reads. stop() writes what waits and the end block.
 class RecordingSource final : public hal::SampleSource {
  public:
   /// `source` and `clock`, which is the source's, must outlive it. Errors: those of check_header().
@@ -55,8 +57,8 @@ class RecordingSource final : public hal::SampleSource {
   }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
   /// True as soon as nothing more can be written.
-  [[nodiscard]] bool failed() const noexcept { return failed_.load(std::memory_order_relaxed); }
-  /// After stop(): the first thing that went wrong with the file.
+  [[nodiscard]] bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
+  /// The first thing that went wrong with the file. After stop(), or once failed().
   [[nodiscard]] const std::optional<hal::Error>& error() const noexcept { return error_; }
 
  private:
@@ -71,6 +73,7 @@ class RecordingSource final : public hal::SampleSource {
   [[nodiscard]] std::vector<hal::Counter> do_counters() const override { return source_.counters(); }
 
   void keep(const hal::SampleBlock& block) noexcept;
+  void look_after_file() noexcept;
   void write_waiting() noexcept;
   void note(hal::Result<void> done) noexcept;
 
@@ -90,7 +93,9 @@ class RecordingSource final : public hal::SampleSource {
   std::atomic<std::uint64_t> refused_{0};  // by the writer's thread
   std::atomic<std::uint64_t> bytes_{0};
   std::atomic<bool> failed_{false};
-  std::optional<hal::Error> error_;  // the writer's thread's while it runs
+  std::optional<hal::Error> error_;  // the writer's thread's until failed_
+  std::int64_t looked_ns_ = 0;       // the reader's: when the file was last looked after
+  std::atomic<std::int64_t> now_ns_{0};
 };
 
 }  // namespace compueye::recording

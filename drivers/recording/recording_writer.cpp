@@ -1,6 +1,7 @@
 #include "drivers/recording/recording_writer.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -19,13 +20,31 @@ using hal::ErrorCode;
 
 constexpr const char* cannot_write = "cannot be written";
 
+/// Without this a power cut may leave no name for what was written. Not every file system can.
+void flush_folder_of(const std::string& path) noexcept {
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  const OpenFile open(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (open.get() >= 0) static_cast<void>(::fsync(open.get()));
+}
+
 hal::Result<OpenFile> open_new(const std::string& path, bool& regular) {
-  OpenFile file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  struct stat status {};
-  if (file.get() < 0 && errno == EEXIST && ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+  if (path == "-") {
     regular = false;
-    file = OpenFile(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+    OpenFile file(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0));
+    if (file.get() < 0) return tl::unexpected(file_failure(errno, path, cannot_write));
+    return file;
   }
+  OpenFile file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+  if (file.get() >= 0) return file;
+  const int why = errno;
+  struct stat status {};
+  if (why != EEXIST || ::stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode)) {
+    return tl::unexpected(file_failure(why, path, cannot_write));
+  }
+  regular = false;
+  // Without O_NONBLOCK the opening of a pipe would wait for its reader.
+  file = OpenFile(::open(path.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (file.get() < 0) return tl::unexpected(file_failure(errno, path, cannot_write));
   return file;
 }
@@ -51,9 +70,10 @@ hal::Result<RecordingWriter> RecordingWriter::create(const std::string& path, co
   writer.file_ = std::move(file);
   if (auto written = writer.write(bytes); !written) {
     // Without its header the file would be of no use to anybody.
-    if (writer.regular_) ::unlink(path.c_str());
+    writer.discard();
     return tl::unexpected(std::move(written.error()));
   }
+  if (writer.regular_) flush_folder_of(path);
   return writer;
 }
 
@@ -61,20 +81,32 @@ hal::Result<void> RecordingWriter::write(std::span<const std::byte> bytes) {
   if (failed_) {
     return hal::fail(ErrorCode::io, path_, "nothing more is recorded, since an earlier write failed");
   }
+  return put(bytes);
+}
+
+hal::Result<void> RecordingWriter::put(std::span<const std::byte> bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
-    const ssize_t put = ::write(file_.get(), bytes.data() + done, bytes.size() - done);
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) {
-      const int why = errno;
+    const ssize_t taken = ::write(file_.get(), bytes.data() + done, bytes.size() - done);
+    int why = taken < 0 ? errno : 0;
+    if (why == EINTR) continue;
+    if (why == EAGAIN) {
+      pollfd room{file_.get(), POLLOUT, 0};
+      if (::poll(&room, 1, static_cast<int>(std::chrono::milliseconds(stall_limit).count())) != 0) continue;
+      why = ETIMEDOUT;
+    }
+    if (why != 0) {
       failed_ = true;
       // If even this fails the rest is a torn tail, which readers know.
-      if (regular_ && done > 0) static_cast<void>(::ftruncate(file_.get(), static_cast<off_t>(bytes_)) == 0);
+      if (regular_ && done > 0 && ::ftruncate(file_.get(), static_cast<off_t>(bytes_)) == 0) {
+        static_cast<void>(::lseek(file_.get(), static_cast<off_t>(bytes_), SEEK_SET));
+      }
       return tl::unexpected(file_failure(why, path_, cannot_write));
     }
-    done += static_cast<std::size_t>(put);
+    done += static_cast<std::size_t>(taken);
   }
   bytes_ += bytes.size();
+  flushed_ = false;
   return {};
 }
 
@@ -108,15 +140,23 @@ hal::Result<void> RecordingWriter::append(const hal::SampleBlock& block, std::in
   last_ = head.books;
   ++last_.index;
   last_frame_ = head.frame;
-  if (sync_interval_ns_ > 0 && arrival_ns - last_sync_ns_ >= sync_interval_ns_) {
-    last_sync_ns_ = arrival_ns;
-    // Not every file system can flush; a disk that is broken or full says so here.
-    if (regular_ && ::fdatasync(file_.get()) != 0 && errno != EINVAL && errno != EROFS) {
-      failed_ = true;
-      return tl::unexpected(file_failure(errno, path_, "cannot be flushed to the disk"));
-    }
-  }
-  return {};
+  return flush_if_due(arrival_ns);
+}
+
+hal::Result<void> RecordingWriter::flush_if_due(std::int64_t now_ns) {
+  if (sync_interval_ns_ <= 0 || flushed_ || failed_ || now_ns - last_sync_ns_ < sync_interval_ns_) return {};
+  last_sync_ns_ = now_ns;
+  flushed_ = true;
+  // Not every file system can flush; a disk that is broken or full says so here.
+  if (!regular_ || ::fdatasync(file_.get()) == 0 || errno == EINVAL || errno == EROFS) return {};
+  failed_ = true;
+  return tl::unexpected(file_failure(errno, path_, "cannot be flushed to the disk"));
+}
+
+void RecordingWriter::discard() noexcept {
+  failed_ = true;
+  static_cast<void>(file_.close());
+  if (regular_) ::unlink(path_.c_str());
 }
 
 hal::Result<void> RecordingWriter::finish(Ending ending, std::int64_t at_ns, const hal::FrameAccount& account,
@@ -128,13 +168,14 @@ hal::Result<void> RecordingWriter::finish(Ending ending, std::int64_t at_ns, con
   head.books = books_of(account, frames_, unrecorded);
   hal::Result<void> done;
   std::array<std::byte, end_block_bytes> bytes{};
-  if (!failed_) {
-    if (encode_end_block(head, bytes)) {
-      done = write(bytes);
-    } else {
-      done = hal::fail(ErrorCode::out_of_range, path_,
-                       "the source's account holds a counter that a recording has no room for");
-    }
+  if (!encode_end_block(head, bytes)) {
+    done = hal::fail(ErrorCode::out_of_range, path_,
+                     "the source's account holds a counter that a recording has no room for");
+  } else if (!failed_) {
+    done = write(bytes);
+  } else if (regular_) {
+    // The disk was full for a frame; what says how many are missing is small, and somebody may have made room.
+    static_cast<void>(put(bytes));
   }
   if (regular_ && ::fsync(file_.get()) != 0 && errno != EINVAL && errno != EROFS && done) {
     done = tl::unexpected(file_failure(errno, path_, "cannot be flushed to the disk"));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -20,17 +21,21 @@ namespace compueye::recording {
 ///
 /// Each block is one write() from a buffer of one block, so a process that is killed loses no block but the one it was
 /// writing, which a reader sees as a torn tail. Against power cuts the file is flushed to the disk whenever
-/// `sync_interval_ns` has passed since the last time, and at the end.
+/// `sync_interval_ns` has passed since the last time, also while no frames come if flush_if_due() is called, and at the
+/// end; the folder that it was made in is flushed at once.
 ///
 /// When the disk is full or a write fails, the file is cut back to its last whole block and append() says why; nothing
-/// more is then written.
+/// more is then written but, if there is room for it, the end block with the frames that are missing. A pipe that
+/// takes nothing for `stall_limit` has failed.
 class RecordingWriter {
  public:
   static constexpr std::int64_t default_sync_interval_ns = 1'000'000'000;
+  static constexpr std::chrono::seconds stall_limit{30};
 
-  /// Makes the file and writes the header. A file that exists is refused (io): recordings are never overwritten; a
-  /// device or a pipe that exists is written to. `sync_interval_ns` 0: only at the end. Errors besides: those of
-  /// check_header(), not_found (no such folder), no_space.
+  /// Makes the file and writes the header. A file or link that exists is refused (io): recordings are never
+  /// overwritten; a device or a pipe that exists and has a reader is written to, and "-" is the standard output.
+  /// `sync_interval_ns` 0: only at the end. Errors besides: those of check_header(), not_found (no such folder),
+  /// no_space.
   [[nodiscard]] static hal::Result<RecordingWriter> create(const std::string& path, const RecordingHeader& header,
                                                            std::int64_t sync_interval_ns = default_sync_interval_ns);
 
@@ -41,6 +46,13 @@ class RecordingWriter {
   /// no_space and io, after which the writer accepts nothing more.
   [[nodiscard]] hal::Result<void> append(const hal::SampleBlock& block, std::int64_t arrival_ns,
                                          const hal::FrameAccount& account, std::uint64_t unrecorded);
+
+  /// Flushes to the disk what was appended longer than `sync_interval_ns` ago. `now_ns`: Clock time since the
+  /// recording's start. Errors: io, after which the writer accepts nothing more.
+  [[nodiscard]] hal::Result<void> flush_if_due(std::int64_t now_ns);
+
+  /// The file is of no use: closes it, and removes it if it was made here.
+  void discard() noexcept;
 
   /// Appends the end block, flushes to the disk and closes. Call it once, whatever append() returned.
   [[nodiscard]] hal::Result<void> finish(Ending ending, std::int64_t at_ns, const hal::FrameAccount& account,
@@ -56,6 +68,7 @@ class RecordingWriter {
  private:
   RecordingWriter() = default;
   [[nodiscard]] hal::Result<void> write(std::span<const std::byte> bytes);
+  [[nodiscard]] hal::Result<void> put(std::span<const std::byte> bytes);
 
   OpenFile file_;
   std::string path_;
@@ -70,6 +83,7 @@ class RecordingWriter {
   std::uint64_t bytes_ = 0;
   std::int64_t sync_interval_ns_ = 0;
   std::int64_t last_sync_ns_ = 0;
+  bool flushed_ = true;
 };
 
 }  // namespace compueye::recording

@@ -25,8 +25,22 @@ void WaitingFrames::push() noexcept {
 
 WaitingFrame* WaitingFrames::oldest() noexcept {
   std::unique_lock lock(mutex_);
-  filled_.wait(lock, [this] { return closed_ || pushed_ > done_; });
+  filled_.wait(lock, [this] { return closed_ || woken_ || pushed_ > done_; });
+  woken_ = false;
   return pushed_ > done_ ? &slots_[done_ % slots_.size()] : nullptr;
+}
+
+void WaitingFrames::wake() noexcept {
+  {
+    const std::lock_guard lock(mutex_);
+    woken_ = true;
+  }
+  filled_.notify_one();
+}
+
+bool WaitingFrames::drained() noexcept {
+  const std::lock_guard lock(mutex_);
+  return closed_ && pushed_ == done_;
 }
 
 void WaitingFrames::done() noexcept {

@@ -35,9 +35,13 @@ class WaitingFrames {
   /// Eye's thread: hands the claimed slot over.
   void push() noexcept;
 
-  /// File's thread: the oldest waiting frame, valid until done(); waits for one. nullptr once the queue is closed and
-  /// drained.
+  /// File's thread: the oldest waiting frame, valid until done(); waits for one until somebody calls wake(). nullptr
+  /// when there is none.
   [[nodiscard]] WaitingFrame* oldest() noexcept;
+  /// Any thread: the file's thread has something else to look at.
+  void wake() noexcept;
+  /// Nothing more will come, and everything is done().
+  [[nodiscard]] bool drained() noexcept;
   /// File's thread: the oldest frame's slot may be used again.
   void done() noexcept;
 
@@ -52,6 +56,7 @@ class WaitingFrames {
   std::uint64_t pushed_ = 0;
   std::uint64_t done_ = 0;
   bool closed_ = false;
+  bool woken_ = false;
 };
 
 }  // namespace compueye::recording

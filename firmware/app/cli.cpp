@@ -142,9 +142,9 @@ CommandLine read_command_line(int argc, const char* const* argv, std::span<const
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return {print_instead(app, error), OnSignal::ends_the_process, false};
+    if (error.get_exit_code() == 0) return {print_instead(app, error), OnSignal::gives_up, false};
     const bool json = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
-    return {tl::unexpected(usage_error(app, error, commands)), OnSignal::ends_the_process, json};
+    return {tl::unexpected(usage_error(app, error, commands)), OnSignal::gives_up, json};
   }
   return line;
 }

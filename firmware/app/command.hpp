@@ -21,7 +21,7 @@ using Action = std::function<hal::Result<void>(Session&)>;
 struct Command {
   std::string_view name;
   std::string_view summary;
-  OnSignal on_signal = OnSignal::ends_the_process;
+  OnSignal on_signal = OnSignal::gives_up;
   /// Adds the command's options, and returns what is done with what they were set to.
   Action (*declare)(OptionList& options) = nullptr;
   /// What --help says below the options; it ends in examples.
@@ -43,7 +43,7 @@ struct CommandLine {
   /// read on: for an option or a command that does not exist the nearest one that does is suggested, and that comes
   /// before anything that is missing, since a misspelt option is most often the one that is missed.
   hal::Result<Action> action;
-  OnSignal on_signal = OnSignal::ends_the_process;
+  OnSignal on_signal = OnSignal::gives_up;
   bool json = false;  ///< --json is given, to whichever command
 };
 

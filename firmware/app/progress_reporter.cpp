@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <utility>
 
+#include "firmware/files/output_stream.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/words.hpp"
 
@@ -44,9 +45,11 @@ ProgressReporter::ProgressReporter(const hal::Clock& clock, ProgressStyle style,
 }
 
 ProgressReporter::ProgressReporter(const hal::Clock& clock)
-    : ProgressReporter(clock, style_of_stderr(), [](std::string_view text) {
-        if (std::fwrite(text.data(), 1, text.size(), stderr) == text.size()) std::fflush(stderr);
-      }) {}
+    : ProgressReporter(clock, style_of_stderr(),
+                       // A terminal that takes nothing must not hold the work: what does not fit is not said.
+                       [to = std::make_shared<OutputStream>(STDERR_FILENO)](std::string_view text) {
+                         static_cast<void>(to->write_now(text));
+                       }) {}
 
 ProgressReporter::~ProgressReporter() {
   if (drawn_) write_("\n");

@@ -3,9 +3,9 @@
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): sigset_t is POSIX, not C
 
 #include <atomic>
-#include <condition_variable>
+#include <chrono>
 #include <cstdint>
-#include <cstdio>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "firmware/app/progress_reporter.hpp"
+#include "firmware/files/output_stream.hpp"
 #include "firmware/text/figures.hpp"
 #include "hal/clock.hpp"
 #include "hal/result.hpp"
@@ -21,36 +22,48 @@
 
 namespace compueye::firmware {
 
-/// Writes `text` and flushes. Errors: no_space or io when the file (stdout on a full disk, a closed pipe) refuses it;
-/// `name` says which.
-[[nodiscard]] hal::Result<void> print_text(const std::string& text, std::FILE* to = stdout,
+/// Writes `text`, waiting for a reader as long as `go_on()`. Errors: no_space, io (a full disk, a closed pipe) or
+/// timeout (nobody reads); `name` says which stream.
+[[nodiscard]] hal::Result<void> print_text(const std::string& text, OutputStream& to,
+                                           const std::function<bool()>& go_on,
                                            const std::string& name = "standard output");
 
 /// What the process returns: 2 for a usage error, 1 for every other failure.
 [[nodiscard]] int exit_code(const hal::Error& error) noexcept;
 
-/// Writes "compueye: place: sentence" and returns exit_code(), so that main() can end with it. Control characters (a
-/// file name may hold a line break or a terminal escape) become visible escapes, so that it is one line whatever it
-/// quotes.
-int print_error(const hal::Error& error, std::FILE* to = stderr);
+/// "compueye: place: sentence" and a line end. Control characters (a file name may hold a line break or a terminal
+/// escape) become visible escapes, so that it is one line whatever it quotes.
+[[nodiscard]] std::string error_line(const hal::Error& error);
 
-/// What Ctrl-C (SIGINT), SIGTERM and SIGHUP do to a command.
+/// What the first Ctrl-C (SIGINT), SIGTERM or SIGHUP does to a command. A second one ends any command at once, with
+/// exit code 128 + its number; a repetition within `SignalLimits::same_request` is no second one.
 enum class OnSignal : std::uint8_t {
-  ends_the_process,  ///< at once
-  /// The command is asked to end, and does so by itself with what it has. Repeating the signal changes nothing: being
-  /// impatient must not leave half a file behind, nor spoil the exit code of a program on its way out.
+  /// The command is asked to end, and does so by itself with what it has. What does not end within a limit (a reader
+  /// that sleeps, a disk that hangs) is ended from here.
   ends_in_order,
-  /// The same for a command that computes once and writes at the end; but whatever takes longer than a grace time to
-  /// notice (one very long frame, reading a huge file) is ended from here: partial files are removed, the sentence is
-  /// printed and the process left.
+  /// The same for a command that computes once and writes at the end, with a short limit: whatever takes longer than
+  /// that to notice (one very long frame, reading a huge file) is left, and nothing is written.
   gives_up,
+};
+
+struct SignalLimits {
+  std::chrono::milliseconds in_order{10'000};
+  std::chrono::milliseconds giving_up{500};
+  /// Who sends a signal to a process and to its group sends it twice, as timeout(1) does.
+  std::chrono::milliseconds same_request{200};
+};
+
+/// Whoever has changed the terminal for a picture of its own. Both are called from another thread.
+struct ScreenUser {
+  std::function<void()> give_back;   ///< before the process stops (Ctrl-Z) or is left
+  std::function<void()> take_again;  ///< when it goes on
 };
 
 /// What a command has of the world around it: the clock, whether it was asked to stop, and the two streams on which it
 /// speaks. One in a process, made in main() while that has a single thread.
 class Session {
  public:
-  Session() = default;
+  explicit Session(SignalLimits limits = {}) : limits_(limits) {}
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
   ~Session();
@@ -68,11 +81,12 @@ class Session {
   [[nodiscard]] const std::atomic<bool>& stop_requested() const noexcept { return stop_requested_; }
   /// The error interrupted once a stop was requested.
   [[nodiscard]] hal::Result<void> check_stop() const;
-  /// A file that is being written through AtomicFile: its partial file goes when the process is left from here.
-  void guard_output(const std::string& target);
-  /// A whole file that makes no sense without the rest.
+  /// A whole file that makes no sense without the rest: it goes when the process is left from here, as do the partial
+  /// files of AtomicFile.
   void guard_part(const std::string& file);
-  /// The work is done and about to be published: from now on nothing stops it. Error interrupted when a stop came
+  /// The terminal is given back when the process is stopped or left from here; {}: nobody has it any more.
+  void guard_screen(ScreenUser user);
+  /// The work is done and about to be published: from now on it ends in order. Error interrupted when a stop came
   /// before.
   [[nodiscard]] hal::Result<void> seal();
 
@@ -82,13 +96,15 @@ class Session {
   [[nodiscard]] recon::Progress progress();
   /// Sums up the stage in work.
   void end_progress();
+  /// A line on stderr while the work goes on, if there is room for it; from any thread.
+  void say(std::string_view line);
   /// A sentence beside the report, on stderr.
   void note(std::string_view sentence);
   /// The report of the command, which prints one only: as text at once, or with --json as one object when the command
   /// has ended, with a failure after it as its member "error". Error io or no_space when standard output refuses it.
   [[nodiscard]] hal::Result<void> print(Figures figures);
   /// What is text for people and programs alike.
-  [[nodiscard]] hal::Result<void> print(const std::string& text) { return print_text(text); }
+  [[nodiscard]] hal::Result<void> print(const std::string& text);
   /// Ends the command: its failure as a sentence on stderr and, with --json, as an object on stdout. What main()
   /// returns: 0, 1 (failed) or 2 (wrong usage).
   [[nodiscard]] int end(hal::Result<void> done);
@@ -96,22 +112,26 @@ class Session {
  private:
   void watch();
   void end_watching();
-  [[noreturn]] void leave();
-  [[nodiscard]] hal::Result<void> print_json(const hal::Result<void>& done) const;
+  [[nodiscard]] bool seen(int signal);
+  [[noreturn]] void leave(int code, const hal::Error& why);
+  [[nodiscard]] hal::Result<void> print_json(const hal::Result<void>& done);
+  [[nodiscard]] std::function<bool()> patience();
 
+  const SignalLimits limits_;
   hal::MonotonicClock clock_;
   bool json_ = false;
+  OutputStream out_{1}, err_{2};
   std::optional<Figures> report_;  // to be printed at the end, with --json
   std::optional<ProgressReporter> reporter_;
 
-  OnSignal on_signal_ = OnSignal::ends_the_process;
+  OnSignal on_signal_ = OnSignal::gives_up;
   sigset_t signals_{};
   std::atomic<bool> stop_requested_{false};
   std::mutex mutex_;
-  std::condition_variable ended_changed_;
   bool ended_ = false;
-  std::vector<std::string> outputs_;
+  std::optional<std::int64_t> asked_ns_;  // when the stop came
   std::vector<std::string> parts_;
+  ScreenUser screen_;
   std::thread thread_;
 };
 

@@ -4,13 +4,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <utility>
 
+#include "firmware/files/output_target.hpp"
+#include "firmware/files/partial_file.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -18,61 +20,54 @@ namespace {
 
 constexpr std::string_view cannot_write = "cannot be written";
 
-std::atomic<unsigned> partial_counter{0};
-
-// The suffix must fit behind the longest name a file system allows (255 bytes).
-std::string partial_name(const std::filesystem::path& target) {
-  std::string name = target.filename();
-  const std::string suffix = "." + std::to_string(::getpid()) + "-" + std::to_string(partial_counter++) + ".partial";
-  if (name.size() + suffix.size() > 255 && name.size() <= 255) name.resize(255 - suffix.size());
-  return target.parent_path() / (name + suffix);
+/// What is no file and cannot be replaced. A pipe is opened without waiting for its reader, and written to as usual.
+hal::Result<FileDescriptor> open_in_place(const std::string& path) {
+  FileDescriptor file(::open(path.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!file.is_open()) return tl::unexpected(file_error(errno, path, cannot_write));
+  const int flags = ::fcntl(file.get(), F_GETFL);
+  if (flags >= 0) static_cast<void>(::fcntl(file.get(), F_SETFL, flags & ~O_NONBLOCK));
+  return file;
 }
 
-// Without this a power cut may undo the rename. A file system that cannot do it has nothing better to offer.
-void flush_folder_of(const std::filesystem::path& file) noexcept {
-  const std::filesystem::path folder = file.parent_path();
-  const FileDescriptor fd(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (fd.is_open()) static_cast<void>(::fsync(fd.get()));
+/// As its owner had it.
+void take_after(const FileDescriptor& file, const struct stat& older) noexcept {
+  // Root's way to leave a file to its owner; others may at least have the group. Before the mode, which it resets.
+  if (::fchown(file.get(), older.st_uid, older.st_gid) != 0) {
+    static_cast<void>(::fchown(file.get(), static_cast<uid_t>(-1), older.st_gid) == 0);
+  }
+  static_cast<void>(::fchmod(file.get(), older.st_mode & 07777U));
 }
 
 }  // namespace
+
+void flush_folder_of(const std::string& file) noexcept {
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  const FileDescriptor fd(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd.is_open()) static_cast<void>(::fsync(fd.get()));
+}
 
 hal::Result<AtomicFile> AtomicFile::create(const std::string& path) {
   if (path.empty()) return hal::fail(hal::ErrorCode::usage, "output file", "has an empty name, expected a file name");
   AtomicFile file;
   file.target_ = path;
-  std::error_code ec;
-  if (std::filesystem::is_symlink(path, ec)) {
-    if (auto behind = std::filesystem::canonical(path, ec); !ec) file.target_ = std::move(behind);
-  }
-  struct stat status {};
-  if (::stat(file.target_.c_str(), &status) != 0) {
-    if (path.back() == '/') return tl::unexpected(file_error(EISDIR, path, cannot_write));
-    return file.open_partial(std::nullopt).map([&] { return std::move(file); });
-  }
-  if (S_ISDIR(status.st_mode)) return tl::unexpected(file_error(EISDIR, path, cannot_write));
-  if (S_ISREG(status.st_mode)) {
-    return file.open_partial(status.st_mode & 07777U).map([&] { return std::move(file); });
-  }
   file.replaces_ = false;
-  file.partial_ = file.target_;
-  file.file_ = FileDescriptor(::open(file.target_.c_str(), O_WRONLY | O_CLOEXEC));
-  if (!file.file_.is_open()) return tl::unexpected(file_error(errno, path, cannot_write));
-  return file;
-}
-
-hal::Result<void> AtomicFile::open_partial(std::optional<mode_t> permissions) {
-  for (int attempt = 0; attempt < 100; ++attempt) {
-    partial_ = partial_name(target_);
-    file_ = FileDescriptor(::open(partial_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file_.is_open()) {
-      if (permissions) static_cast<void>(::fchmod(file_.get(), *permissions));
-      return {};
-    }
-    // A leftover of a crashed process that had the same number: take the next name.
-    if (errno != EEXIST) break;
+  if (const auto stream = named_stream(path)) {
+    file.file_ = FileDescriptor(::fcntl(*stream, F_DUPFD_CLOEXEC, 0));
+    if (!file.file_.is_open()) return tl::unexpected(file_error(errno, path, cannot_write));
+    return file;
   }
-  return tl::unexpected(file_error(errno, target_, cannot_write));
+  const OutputTarget target = TRY(output_target(path));
+  file.target_ = target.path;
+  if (target.present && !S_ISREG(target.present->st_mode)) {
+    file.file_ = TRY(open_in_place(target.path));
+    return file;
+  }
+  PartialFile partial = TRY(PartialFile::create(target.path));
+  if (target.present) take_after(partial.file, *target.present);
+  file.replaces_ = true;
+  file.file_ = std::move(partial.file);
+  file.partial_ = std::move(partial.path);
+  return file;
 }
 
 AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
@@ -134,25 +129,40 @@ hal::Result<void> AtomicFile::commit() {
     discard();
     return tl::unexpected(file_error(error_number, target_, cannot_write));
   }
-  error_number = file_.close();
-  if (replaces_ && error_number == 0 && ::rename(partial_.c_str(), target_.c_str()) != 0) error_number = errno;
-  if (error_number != 0) {
-    if (replaces_) ::unlink(partial_.c_str());
+  if (!replaces_) {
+    error_number = file_.close();
+    return error_number == 0 ? hal::Result<void>{} : tl::unexpected(file_error(error_number, target_, cannot_write));
+  }
+  // Still open, and so locked: who sweeps must not find it between the two.
+  if (::rename(partial_.c_str(), target_.c_str()) != 0) {
+    error_number = errno;
+    discard();
     return tl::unexpected(file_error(error_number, target_, cannot_write));
   }
-  if (replaces_) flush_folder_of(target_);
+  forget_partial(partial_);
+  error_number = file_.close();
+  if (error_number != 0) return tl::unexpected(file_error(error_number, target_, cannot_write));
+  flush_folder_of(target_);
   return {};
 }
 
 void AtomicFile::discard() noexcept {
   if (!file_.is_open()) return;
+  if (replaces_) {
+    ::unlink(partial_.c_str());
+    forget_partial(partial_);
+  }
   static_cast<void>(file_.close());
-  if (replaces_) ::unlink(partial_.c_str());
 }
 
 hal::Result<void> try_output(const std::string& path) {
-  if (path.empty()) return {};
-  return AtomicFile::create(path).map([](const AtomicFile&) {});
+  if (path.empty() || named_stream(path)) return {};
+  const OutputTarget target = TRY(output_target(path));
+  if (!target.present || S_ISREG(target.present->st_mode))
+    return AtomicFile::create(path).map([](const AtomicFile&) {});
+  // Who reads a pipe would take the end of the trial for the end of the output.
+  if (::faccessat(AT_FDCWD, target.path.c_str(), W_OK, AT_EACCESS) == 0) return {};
+  return tl::unexpected(file_error(errno, path, cannot_write));
 }
 
 hal::Result<void> make_folder(const std::string& folder, std::string_view trouble) {

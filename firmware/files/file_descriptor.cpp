@@ -41,6 +41,10 @@ Advice advice_for(int error_number) {
     case EFBIG:
       return {ErrorCode::no_space, "it would exceed the largest allowed file size",
               "raise the limit (ulimit -f) or write less"};
+    case ENXIO:
+      return {ErrorCode::io, "nobody reads this pipe", "start its reader first"};
+    case ELOOP:
+      return {ErrorCode::io, "its symbolic links lead in a circle", "name the file itself"};
     case ENAMETOOLONG:
       return {ErrorCode::io, "its name is too long", "choose a shorter name"};
     case EMFILE:

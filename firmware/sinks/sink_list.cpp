@@ -14,21 +14,17 @@ using Sink = std::unique_ptr<hal::FrameSink>;
 
 constexpr std::array<SinkRow, 5> rows{{
     {"png", "default with --out", true, "frame-*.png",
-     [](const std::string& folder, const hal::Clock&) -> Sink { return std::make_unique<PngSequenceSink>(folder, 8); }},
+     [](const SinkWanted& wanted) -> Sink { return std::make_unique<PngSequenceSink>(wanted.folder, 8); }},
     {"png16", "", true, "frame-*.png",
-     [](const std::string& folder, const hal::Clock&) -> Sink {
-       return std::make_unique<PngSequenceSink>(folder, 16);
-     }},
+     [](const SinkWanted& wanted) -> Sink { return std::make_unique<PngSequenceSink>(wanted.folder, 16); }},
     {"npy", "one file frames.npy", true, "frames.npy",
-     [](const std::string& folder, const hal::Clock&) -> Sink {
-       return std::make_unique<NpySink>(folder + "/frames.npy");
-     }},
+     [](const SinkWanted& wanted) -> Sink { return std::make_unique<NpySink>(wanted.folder + "/frames.npy"); }},
     {"none", "", false, "", nullptr},
     {"terminal", "", false, "",
-     [](const std::string&, const hal::Clock& clock) -> Sink {
+     [](const SinkWanted& wanted) -> Sink {
        TerminalOptions options;
-       options.colours = terminal_colours_from_environment();
-       return std::make_unique<TerminalSink>(clock, options);
+       options.look = terminal_look_from_environment();
+       return std::make_unique<TerminalSink>(wanted.clock, options, wanted.status);
      }},
 }};
 

@@ -1,9 +1,10 @@
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -25,17 +26,6 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-std::string written(const hal::Error& error, int expected_exit) {
-  std::FILE* file = std::tmpfile();
-  REQUIRE(file != nullptr);
-  CHECK(print_error(error, file) == expected_exit);
-  std::rewind(file);
-  std::string text;
-  for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) text += static_cast<char>(c);
-  std::fclose(file);
-  return text;
-}
 
 }  // namespace
 
@@ -79,11 +69,11 @@ TEST_CASE("the nearest name is suggested, and none when none is near") {
 
 TEST_CASE("an error is one line on stderr and an exit code") {
   using hal::ErrorCode;
-  CHECK(written({ErrorCode::usage, "--frames", "is -1, expected 1 or more"}, 2) ==
+  CHECK(error_line({ErrorCode::usage, "--frames", "is -1, expected 1 or more"}) ==
         "compueye: --frames: is -1, expected 1 or more\n");
-  CHECK(written({ErrorCode::not_found, "a\nb.npy", "tab\t, escape \x1b[2J and \x7f"}, 1) ==
+  CHECK(error_line({ErrorCode::not_found, "a\nb.npy", "tab\t, escape \x1b[2J and \x7f"}) ==
         "compueye: a\\nb.npy: tab\\t, escape \\x1b[2J and \\x7f\n");
-  CHECK(written({ErrorCode::timeout, {}, {}}, 1) == "compueye: " + std::string(hal::name(ErrorCode::timeout)) + "\n");
+  CHECK(error_line({ErrorCode::timeout, {}, {}}) == "compueye: " + std::string(hal::name(ErrorCode::timeout)) + "\n");
   for (int code = 0; code <= static_cast<int>(ErrorCode::interrupted); ++code) {
     const hal::Error error{static_cast<ErrorCode>(code), "x", "y"};
     CHECK(exit_code(error) == (error.code == ErrorCode::usage ? 2 : 1));
@@ -206,18 +196,27 @@ TEST_CASE("an error becomes a member of what was reported before it") {
   CHECK(json["error"]["sentence"] == "made from another A");
 }
 
-TEST_CASE("a report that cannot be written is an error") {
-  std::FILE* full = std::fopen("/dev/full", "w");
-  REQUIRE(full != nullptr);
-  const auto refused = print_text("{}\n", full, "report.json");
-  std::fclose(full);
+TEST_CASE("a report that cannot be written is an error, and so is one that nobody reads") {
+  const auto never = [] { return false; };
+  OutputStream full(::open("/dev/full", O_WRONLY | O_CLOEXEC));
+  const auto refused = print_text("{}\n", full, never, "report.json");
+  ::close(full.fd());
   REQUIRE_FALSE(refused.has_value());
   CHECK(refused.error().code == hal::ErrorCode::no_space);
   CHECK(refused.error().place == "report.json");
 
-  std::FILE* fine = std::tmpfile();
-  REQUIRE(fine != nullptr);
-  CHECK(print_text("{}\n", fine).has_value());
-  CHECK(std::ftell(fine) == 3);
-  std::fclose(fine);
+  int ends[2];
+  REQUIRE(::pipe2(ends, O_CLOEXEC) == 0);
+  OutputStream pipe(ends[1]);
+  CHECK(print_text("{}\n", pipe, never).has_value());
+  char read[4] = {};
+  CHECK(::read(ends[0], read, sizeof read) == 3);
+  int asked = 0;
+  const auto unread = print_text(std::string(1U << 20U, ' '), pipe, [&] { return ++asked < 2; });
+  REQUIRE_FALSE(unread.has_value());
+  CHECK(unread.error().code == hal::ErrorCode::timeout);
+  CHECK(asked == 2);
+  CHECK((::fcntl(ends[1], F_GETFL) & O_NONBLOCK) == 0);
+  ::close(ends[0]);
+  ::close(ends[1]);
 }

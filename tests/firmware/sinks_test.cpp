@@ -1,10 +1,6 @@
 #include <doctest/doctest.h>
-#include <fcntl.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -18,66 +14,18 @@
 #include "firmware/sinks/sink_list.hpp"
 #include "firmware/sinks/terminal_sink.hpp"
 #include "hal/clock.hpp"
+#include "tests/firmware/sinks_terminal.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
+using compueye::test::frame_of;
+using compueye::test::Pipe;
+using compueye::test::small_terminal;
 using compueye::test::TemporaryFolder;
 using hal::ErrorCode;
-using hal::Frame;
 using hal::FrameFormat;
-
-namespace {
-
-Frame frame_of(const std::vector<float>& pixels, FrameFormat format, std::uint64_t number = 0) {
-  return {pixels, format, number, 0};
-}
-
-// A terminal as far as a sink can see: what it writes ends up in a pipe.
-class Pipe {
- public:
-  Pipe() {
-    if (::pipe(ends_) != 0) std::abort();
-    ::fcntl(ends_[0], F_SETFL, O_NONBLOCK);
-    ::fcntl(ends_[1], F_SETPIPE_SZ, 1 << 20);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  ~Pipe() {
-    ::close(ends_[0]);
-    ::close(ends_[1]);
-  }
-  [[nodiscard]] int fd() const { return ends_[1]; }
-  [[nodiscard]] std::string take() const {
-    std::string all;
-    char piece[4096];
-    for (ssize_t n = 0; (n = ::read(ends_[0], piece, sizeof piece)) > 0;)
-      all.append(piece, static_cast<std::size_t>(n));
-    return all;
-  }
-
- private:
-  int ends_[2] = {-1, -1};
-};
-
-std::size_t count(const std::string& text, const std::string& what) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + what.size())) ++n;
-  return n;
-}
-
-TerminalOptions small_terminal(const Pipe& pipe, TerminalColours colours = TerminalColours::truecolor) {
-  TerminalOptions options;
-  options.fd = pipe.fd();
-  options.columns = 10;
-  options.lines = 6;
-  options.colours = colours;
-  options.min_interval_ns = 100;
-  return options;
-}
-
-}  // namespace
 
 TEST_CASE("every sink refuses to write before open() and closes as often as asked") {
   const TemporaryFolder folder;
@@ -115,7 +63,7 @@ TEST_CASE("every row of the list makes what it says, and what lies in the folder
     CHECK(row.in_folder == !row.files.empty());
     if (!row.in_folder) continue;
     const TemporaryFolder folder;
-    const auto sink = row.make(folder / "made", clock);
+    const auto sink = row.make({folder / "made", clock});
     const std::vector<float> pixels(6, 0.5F);
     REQUIRE(sink->open({2, 3}).has_value());
     REQUIRE(sink->write(frame_of(pixels, {2, 3})).has_value());
@@ -134,7 +82,7 @@ TEST_CASE("png16 keeps more of a brightness than png") {
   const hal::VirtualClock clock;
   const auto kept = [&](std::string_view name) {
     const TemporaryFolder folder;
-    const auto sink = find_sink(name)->make(folder / "made", clock);
+    const auto sink = find_sink(name)->make({folder / "made", clock});
     REQUIRE(sink->open({1, 2}).has_value());
     REQUIRE(sink->write(frame_of({0.3F, 0.3F}, {1, 2})).has_value());
     REQUIRE(sink->close().has_value());
@@ -151,7 +99,7 @@ TEST_CASE("the formats are the rows that keep files, and none") {
   for (const std::string_view format : formats) CHECK(text.find(format) != std::string::npos);
   CHECK((find_sink("none")->make == nullptr));
   const hal::VirtualClock clock;
-  CHECK((find_sink("terminal")->make("", clock) != nullptr));
+  CHECK((find_sink("terminal")->make({"", clock}) != nullptr));
 }
 
 TEST_CASE("the npy sink keeps every frame as it came") {
@@ -261,104 +209,4 @@ TEST_CASE("no sink allocates while frames flow") {
     CHECK(ok);
     CHECK(sink->close().has_value());
   }
-}
-
-TEST_CASE("the terminal shows two pixels a character and gives the cursor back") {
-  const Pipe pipe;
-  const hal::VirtualClock clock;
-  TerminalSink sink(clock, small_terminal(pipe));
-  REQUIRE(sink.open({2, 2}).has_value());
-  CHECK(pipe.take() == "\x1b[?25l");
-  CHECK(sink.shown_rows() == 10);
-  CHECK(sink.shown_cols() == 10);
-  REQUIRE(sink.write(frame_of({0.0F, 1.0F, 0.5F, 0.5F}, {2, 2}, 42)).has_value());
-  const std::string first = pipe.take();
-  CHECK(count(first, "\xe2\x96\x80") == 50);
-  CHECK(count(first, "\n") == 5);
-  // Five rows of the picture each: the third line has black and white above 50 % grey.
-  CHECK(count(first, "\x1b[38;2;0;0;0m\x1b[48;2;128;128;128m") == 1);
-  CHECK(count(first, "\x1b[38;2;255;255;255m") == 3);
-  CHECK(first.find("frame 42") != std::string::npos);
-  REQUIRE(sink.close().has_value());
-  CHECK(pipe.take() == "\x1b[0m\x1b[?25h\n");
-}
-
-TEST_CASE("the terminal redraws in place and passes over frames that come too fast") {
-  const Pipe pipe;
-  hal::VirtualClock clock;
-  TerminalSink sink(clock, small_terminal(pipe));
-  REQUIRE(sink.open({4, 4}).has_value());
-  const std::vector<float> pixels(16, 0.5F);
-  REQUIRE(sink.write(frame_of(pixels, {4, 4}, 1)).has_value());
-  CHECK(pipe.take().find("\x1b[?25l\x1b[38;2;128") == 0);
-  clock.advance(99);
-  REQUIRE(sink.write(frame_of(pixels, {4, 4}, 2)).has_value());
-  CHECK(pipe.take().empty());
-  clock.advance(1);
-  REQUIRE(sink.write(frame_of(pixels, {4, 4}, 3)).has_value());
-  const std::string second = pipe.take();
-  CHECK(second.find("\r\x1b[4A") == 0);
-  CHECK(second.find("frame 3") != std::string::npos);
-  CHECK(sink.frames_shown() == 2);
-}
-
-TEST_CASE("a large picture is averaged down to the terminal and keeps its shape") {
-  const Pipe pipe;
-  const hal::VirtualClock clock;
-  TerminalOptions options = small_terminal(pipe, TerminalColours::palette);
-  options.columns = 40;
-  options.lines = 11;
-  TerminalSink sink(clock, options);
-  REQUIRE(sink.open({160, 160}).has_value());
-  CHECK(sink.shown_rows() == 20);
-  CHECK(sink.shown_cols() == 20);
-  // A fine checkerboard has no grey of its own: only its mean is left.
-  std::vector<float> pixels(160 * 160);
-  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = (i / 160 + i % 160) % 2 == 0 ? 1.0F : 0.0F;
-  REQUIRE(sink.write(frame_of(pixels, {160, 160})).has_value());
-  const std::string text = pipe.take();
-  CHECK(count(text, "\x1b[38;5;244m") == 10);
-  CHECK(count(text, "\x1b[48;5;244m") == 10);
-  CHECK(count(text, "\x1b[38;") == 10);
-}
-
-TEST_CASE("odd sizes, NaN and extreme shapes stay inside the terminal") {
-  const hal::VirtualClock clock;
-  for (const FrameFormat format :
-       {FrameFormat{1, 1}, FrameFormat{3, 1000}, FrameFormat{1000, 3}, FrameFormat{7, 5}, FrameFormat{17, 13}}) {
-    CAPTURE(format.rows);
-    const Pipe pipe;
-    TerminalSink sink(clock, small_terminal(pipe));
-    REQUIRE(sink.open(format).has_value());
-    CHECK(sink.shown_cols() <= 10);
-    CHECK(sink.shown_rows() <= 10);
-    std::vector<float> pixels(static_cast<std::size_t>(format.rows * format.cols), std::nanf(""));
-    pixels[0] = 1e30F;
-    REQUIRE(sink.write(frame_of(pixels, format)).has_value());
-    const std::string text = pipe.take();
-    CHECK(count(text, "\n") == static_cast<std::size_t>((sink.shown_rows() + 1) / 2));
-    CHECK(count(text, "\xe2\x96\x80") == count(text, "\n") * static_cast<std::size_t>(sink.shown_cols()));
-    CHECK(text.find(";-") == std::string::npos);
-  }
-}
-
-TEST_CASE("a terminal that cannot be written is an error") {
-  const hal::VirtualClock clock;
-  TerminalOptions options;
-  options.fd = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
-  TerminalSink full(clock, options);
-  CHECK(full.open({2, 2}).error().code == ErrorCode::no_space);
-  ::close(options.fd);
-  options.fd = -1;
-  TerminalSink closed(clock, options);
-  CHECK(closed.open({2, 2}).error().code == ErrorCode::io);
-}
-
-TEST_CASE("the colours of the terminal come from the environment") {
-  ::setenv("COLORTERM", "truecolor", 1);
-  CHECK(terminal_colours_from_environment() == TerminalColours::truecolor);
-  ::setenv("COLORTERM", "yes", 1);
-  CHECK(terminal_colours_from_environment() == TerminalColours::palette);
-  ::unsetenv("COLORTERM");
-  CHECK(terminal_colours_from_environment() == TerminalColours::palette);
 }

@@ -140,6 +140,6 @@ std::string footer() {
 }  // namespace
 
 extern const Command devices_command;
-const Command devices_command{"devices", "which eyes there are", OnSignal::ends_the_process, declare, footer};
+const Command devices_command{"devices", "which eyes there are", OnSignal::gives_up, declare, footer};
 
 }  // namespace compueye::firmware

@@ -34,7 +34,7 @@ void FrameKeeper::published(const PublishedFrame& published) noexcept {
   std::copy(pixels.begin(), pixels.end(), last_.begin());
   last_frame_ = published.frame.frame;
   const std::uint64_t index = published.delivered - 1;
-  delivered_.store(published.delivered, std::memory_order_relaxed);
+  status_.published(published.frame.frame, published.age_ns, published.late);
   if (index % stride_ != 0) return;
   if (kept_ == capacity_) {
     for (std::size_t i = 1; 2 * i < kept_; ++i) std::copy_n(picture(2 * i).begin(), pixels_, slot(i).begin());
@@ -46,8 +46,7 @@ void FrameKeeper::published(const PublishedFrame& published) noexcept {
   ++kept_;
 }
 
-RunWatch::RunWatch(const FrameKeeper& keeper, std::uint64_t frames, recon::Progress progress)
-    : keeper_(keeper), progress_(std::move(progress)), thread_([this, frames] { watch(frames); }) {}
+RunWatch::RunWatch(std::function<void()> tell) : tell_(std::move(tell)), thread_([this] { watch(); }) {}
 
 RunWatch::~RunWatch() {
   {
@@ -58,12 +57,10 @@ RunWatch::~RunWatch() {
   thread_.join();
 }
 
-void RunWatch::watch(std::uint64_t frames) {
+void RunWatch::watch() {
   constexpr std::chrono::milliseconds every{100};
   std::unique_lock lock(mutex_);
-  while (!ended_.wait_for(lock, every, [this] { return over_; })) {
-    progress_("frames", static_cast<double>(keeper_.delivered()), static_cast<double>(frames));
-  }
+  while (!ended_.wait_for(lock, every, [this] { return over_; })) tell_();
 }
 
 }  // namespace compueye::firmware

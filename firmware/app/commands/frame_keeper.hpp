@@ -1,17 +1,17 @@
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <thread>
 #include <vector>
 
 #include "firmware/pipeline/frame_observer.hpp"
+#include "firmware/sinks/live_status.hpp"
 #include "hal/frame_sink.hpp"
-#include "recon/setup/factor.hpp"
 
 namespace compueye::firmware {
 
@@ -32,8 +32,10 @@ class FrameKeeper final : public FrameObserver {
   /// The last one delivered, whether kept or not; meaningful when delivered() > 0.
   [[nodiscard]] std::span<const float> last() const noexcept { return last_; }
   [[nodiscard]] std::uint64_t last_frame() const noexcept { return last_frame_; }
-  /// So far; from any thread.
-  [[nodiscard]] std::uint64_t delivered() const noexcept { return delivered_.load(std::memory_order_relaxed); }
+  // From any thread:
+  /// So far.
+  [[nodiscard]] std::uint64_t delivered() const noexcept { return status_.delivered(); }
+  [[nodiscard]] const LiveStatus& status() const noexcept { return status_; }
 
  private:
   [[nodiscard]] std::span<float> slot(std::size_t index) noexcept;
@@ -45,24 +47,23 @@ class FrameKeeper final : public FrameObserver {
   std::size_t kept_ = 0;
   std::uint64_t stride_ = 1;
   std::uint64_t last_frame_ = 0;
-  std::atomic<std::uint64_t> delivered_{0};
+  LiveStatus status_;
 };
 
-/// Shows on stderr how far a run is, from a thread of its own, so that the frame path neither writes nor allocates for
-/// it. From construction to destruction.
+/// Tells how far a run is, from a thread of its own, so that the frame path neither writes nor allocates for it. From
+/// construction to destruction.
 class RunWatch {
  public:
-  /// `frames` to deliver, 0 = unknown. `keeper` must outlive the watch, which alone uses `progress` meanwhile.
-  RunWatch(const FrameKeeper& keeper, std::uint64_t frames, recon::Progress progress);
+  /// `tell` is called ten times a second.
+  explicit RunWatch(std::function<void()> tell);
   RunWatch(const RunWatch&) = delete;
   RunWatch& operator=(const RunWatch&) = delete;
   ~RunWatch();
 
  private:
-  void watch(std::uint64_t frames);
+  void watch();
 
-  const FrameKeeper& keeper_;
-  recon::Progress progress_;
+  std::function<void()> tell_;
   std::mutex mutex_;
   std::condition_variable ended_;
   bool over_ = false;

@@ -204,11 +204,9 @@ Result<PictureOutputs> PictureOutputs::create(const OutputRequest& request, Sess
   PictureOutputs outputs(request, session);
   if (!request.png.empty()) {
     TRY(check_png_size(request));
-    session.guard_output(outputs.png_path(0));
     TRY(try_output(outputs.png_path(0)));
   }
   if (request.npy.empty()) return outputs;
-  session.guard_output(request.npy);
   AtomicFile file = TRY(AtomicFile::create(request.npy));
   const std::int64_t shape[] = {request.frames, request.size.rows, request.size.cols};
   const auto axes = std::span<const std::int64_t>(shape).subspan(request.has_frame_axis ? 0 : 1);
@@ -236,7 +234,6 @@ Result<std::int64_t> PictureOutputs::add(std::span<const float> picture) {
   hal::Image image(request_.size.rows, request_.size.cols);
   std::copy(picture.begin(), picture.end(), image.pixels.begin());
   const std::string path = png_path(frame);
-  session_->guard_output(path);
   TRY(write_png(path, image));
   session_->guard_part(path);
   written_.push_back(path);

@@ -155,7 +155,8 @@ Action declare(OptionList& options) {
 }
 
 std::string footer() {
-  return "Ctrl-C ends the recording and keeps what it has, with exit code 0. So does a power cut or kill -9: all but "
+  return "Ctrl-C ends the recording and keeps what it has, with exit code 0; a second one at once. So does a power cut "
+         "or kill -9: all but "
          "the last block is in the file, and `compueye replay` says what is. docs/recordings.md describes the "
          "format.\n\n"
          "Built-in scenes:\n" +

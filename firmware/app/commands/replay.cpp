@@ -185,6 +185,6 @@ std::string footer() {
 
 extern const Command replay_command;
 const Command replay_command{"replay", "what is in a recording, frame by frame, and what is missing",
-                             OnSignal::ends_the_process, declare, footer};
+                             OnSignal::gives_up, declare, footer};
 
 }  // namespace compueye::firmware

@@ -1,8 +1,11 @@
 #include "firmware/app/commands/run.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -24,6 +27,8 @@
 #include "firmware/operating_points/stored_points.hpp"
 #include "firmware/pipeline/pipeline.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
+#include "firmware/sinks/live_status.hpp"
+#include "firmware/sinks/terminal_sink.hpp"
 #include "hal/try.hpp"
 #include "sim/scene_truth.hpp"
 
@@ -32,6 +37,18 @@ namespace {
 
 using hal::ErrorCode;
 using hal::Result;
+
+/// As long as a sink may draw on the terminal.
+class ScreenLease {
+ public:
+  explicit ScreenLease(Session& session) : session_(session) {}
+  ScreenLease(const ScreenLease&) = delete;
+  ScreenLease& operator=(const ScreenLease&) = delete;
+  ~ScreenLease() { session_.guard_screen({}); }
+
+ private:
+  Session& session_;
+};
 
 /// From the board to the report, step by step; each step is a member, and what the next ones need stays here.
 class BoardRun {
@@ -61,6 +78,7 @@ class BoardRun {
   Result<void> fit();
   Result<void> run_pipeline();
   Result<void> run_with(FrameSolver& solver, hal::FrameSink& sink, FrameObserver& observer);
+  [[nodiscard]] std::function<void()> how_far();
   Result<void> compare();
   Result<void> measure_quality();
   Result<void> write_sheet();
@@ -183,8 +201,9 @@ PipelineSettings BoardRun::pipeline_settings() const {
 }
 
 Result<void> BoardRun::run_pipeline() {
-  const auto sinks = make_sinks(options_, session_.clock(), report_.files);
   keeper_ = std::make_unique<FrameKeeper>(hal::FrameFormat{truth_.rows, truth_.cols}, frames());
+  const auto sinks = make_sinks(options_, session_, keeper_->status(), report_.files);
+  const ScreenLease lease(session_);
   if (ladder_.rungs.empty()) {
     ReconstructorSolver solver(eye().reconstructor());
     return run_with(solver, *sinks, *keeper_);
@@ -202,7 +221,7 @@ Result<void> BoardRun::run_with(FrameSolver& solver, hal::FrameSink& sink, Frame
   auto pipeline =
       TRY(Pipeline::create(pipeline_settings(), source_->source(), solver, sink, session_.clock(), &observer));
   std::optional<RunWatch> watch;
-  if (!shows_pictures(options_)) watch.emplace(*keeper_, frames(), session_.progress());
+  if (!shows_pictures(options_)) watch.emplace(how_far());
   report_.summary = pipeline.run(session_.stop_requested());
   watch.reset();
   for (const std::string& sentence : source_->notes()) note(sentence);
@@ -211,6 +230,25 @@ Result<void> BoardRun::run_with(FrameSolver& solver, hal::FrameSink& sink, Frame
   }
   if (!options_.record.empty()) report_.files.push_back(options_.record);
   return {};
+}
+
+/// On a terminal a line that is redrawn; elsewhere how the run goes, every few seconds.
+std::function<void()> BoardRun::how_far() {
+  constexpr std::int64_t every_ns = 5'000'000'000;
+  const LiveStatus& status = keeper_->status();
+  if (::isatty(STDERR_FILENO) == 1 && terminal_can_draw()) {
+    return [this, &status, progress = session_.progress()] {
+      progress("frames", static_cast<double>(status.delivered()), static_cast<double>(frames()));
+    };
+  }
+  return [this, &status, line = StatusLine(status), due_ns = session_.clock().now_ns() + every_ns]() mutable {
+    const std::int64_t now_ns = session_.clock().now_ns();
+    std::array<char, 160> room{};
+    const std::string_view text = line.print(now_ns, room);
+    if (now_ns < due_ns) return;
+    due_ns = now_ns + every_ns;
+    session_.say(fmt::format("{} frames, {}", status.delivered(), text));
+  };
 }
 
 Result<void> BoardRun::measure_quality() {

@@ -9,6 +9,7 @@
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/sinks/contact_sheet.hpp"
 #include "firmware/sinks/sink_list.hpp"
+#include "firmware/sinks/terminal_sink.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -63,19 +64,27 @@ hal::Result<void> try_outputs(const RunOptions& options) {
 }
 
 bool shows_pictures(const RunOptions& options) {
+  const bool terminal = ::isatty(STDOUT_FILENO) == 1;
+  if (terminal && !terminal_can_draw()) return false;
   if (options.show) return *options.show;
-  return !options.json && options.table.empty() && ::isatty(STDOUT_FILENO) == 1;
+  return !options.json && options.table.empty() && terminal;
 }
 
-std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, const hal::Clock& clock,
+std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, Session& session, const LiveStatus& status,
                                            std::vector<std::string>& files) {
   auto sinks = std::make_unique<FanOutSink>();
+  const SinkWanted wanted{options.out, session.clock(), &status};
   const SinkRow& format = *find_sink(options.output_format());
   if (format.make != nullptr) {
-    sinks->add(format.make(options.out, clock));
+    sinks->add(format.make(wanted));
     files.push_back(options.out + "/" + std::string(format.files));
   }
-  if (shows_pictures(options)) sinks->add(find_sink("terminal")->make({}, clock));
+  if (!shows_pictures(options)) return sinks;
+  auto screen = find_sink("terminal")->make(wanted);
+  if (auto* const user = dynamic_cast<TerminalSink*>(screen.get())) {
+    session.guard_screen({[user] { user->give_back(); }, [user] { user->take_again(); }});
+  }
+  sinks->add(std::move(screen));
   return sinks;
 }
 

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "firmware/app/commands/run.hpp"
+#include "firmware/app/session.hpp"
+#include "firmware/sinks/live_status.hpp"
 #include "firmware/text/figures.hpp"
-#include "hal/clock.hpp"
 #include "hal/frame_sink.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
@@ -17,12 +18,12 @@ namespace compueye::firmware {
 /// set-up are spent. Leaves nothing behind but folders. Errors: those of a file that cannot be written.
 [[nodiscard]] hal::Result<void> try_outputs(const RunOptions& options);
 
-/// Whether pictures go to the terminal.
+/// Whether pictures go to the terminal: by default when it can draw and nothing else wants the standard output.
 [[nodiscard]] bool shows_pictures(const RunOptions& options);
 
 /// Every sink the options ask for. `files` gets what will have been written.
-[[nodiscard]] std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, const hal::Clock& clock,
-                                                         std::vector<std::string>& files);
+[[nodiscard]] std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, Session& session,
+                                                         const LiveStatus& status, std::vector<std::string>& files);
 
 /// The contact sheet of a run: scene | conventional eye | reconstruction (the last delivered frame) | its error, with
 /// their figures. An empty `conventional` picture is left out.

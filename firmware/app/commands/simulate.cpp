@@ -16,6 +16,7 @@
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
+#include "firmware/files/atomic_file.hpp"
 #include "firmware/files/npy.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
@@ -98,7 +99,7 @@ void append(const hal::SampleBlock& block, const Board& board, bool codes, Sampl
   if (block.flags.saturated) ++samples.saturated_frames;
 }
 
-Result<Samples> take(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
+Result<Samples> take(const Board& board, const sim::Scene& scene, const SimulateRequest& o, const Session& session) {
   hal::VirtualClock clock;
   auto settings = simulated_eye_settings(board, scene, o.seed);
   if (o.noise_free) settings.steps_off.emplace_back("read noise");
@@ -107,6 +108,7 @@ Result<Samples> take(const Board& board, const sim::Scene& scene, const Simulate
   const std::span<const double> signal = eye->noise_free(0);
   Samples samples;
   for (std::int64_t f = 0; f < o.frames; ++f) {
+    TRY(session.check_stop());
     append(TRY(eye->read(0)), board, o.codes, samples);
     if (!o.noise_free || o.codes) continue;
     for (std::size_t c = 0; c < signal.size(); ++c) {
@@ -164,7 +166,9 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
   Board board = TRY(load_board(request.board));
   TRY(request.overrides.apply(board));
   const sim::Scene scene = TRY(choose_scene(board, request.scene));
-  const Samples samples = TRY(take(board, scene, request));
+  for (const std::string& file : {request.out, request.truth, request.weights}) TRY(try_output(file));
+  const Samples samples = TRY(take(board, scene, request, session));
+  TRY(session.seal());
   TRY(write(samples, board, request));
   TRY(write_truth(board, scene, request));
   return session.print(report_of(board, scene, samples, request));
@@ -199,7 +203,6 @@ std::string footer() {
 }  // namespace
 
 extern const Command simulate_command;
-const Command simulate_command{"simulate", "samples of a board's simulated eye", OnSignal::ends_the_process, declare,
-                               footer};
+const Command simulate_command{"simulate", "samples of a board's simulated eye", OnSignal::gives_up, declare, footer};
 
 }  // namespace compueye::firmware

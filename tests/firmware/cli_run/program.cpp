@@ -28,7 +28,7 @@ std::filesystem::path make_folder() {
 
 }  // namespace
 
-Program::Program(const std::vector<std::string>& arguments) : folder_(make_folder()) {
+Program::Program(const std::vector<std::string>& arguments, int out_file, int err_file) : folder_(make_folder()) {
   std::vector<std::string> words{COMPUEYE_BINARY};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -40,6 +40,8 @@ Program::Program(const std::vector<std::string>& arguments) : folder_(make_folde
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  if (out_file >= 0) posix_spawn_file_actions_adddup2(&actions, out_file, 1);
+  if (err_file >= 0) posix_spawn_file_actions_adddup2(&actions, err_file, 2);
   if (::posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ) != 0) over_ = true;
   posix_spawn_file_actions_destroy(&actions);
 }

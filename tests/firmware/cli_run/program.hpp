@@ -20,7 +20,8 @@ struct Ended {
 /// The `compueye` binary of this build, started with `arguments` and neither terminal nor input.
 class Program {
  public:
-  explicit Program(const std::vector<std::string>& arguments);
+  /// `out` and `err`: open files for its streams instead of those that are read when it has ended; -1: none.
+  explicit Program(const std::vector<std::string>& arguments, int out = -1, int err = -1);
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
   ~Program();

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace compueye::firmware {
+
+/// How a run goes: told by its publish thread, read by any. Numbers of one frame may be mixed with those of the next.
+class LiveStatus {
+ public:
+  /// A frame was published; `frame` is its number, from 0, `age_ns` from the start of its exposure.
+  void published(std::uint64_t frame, std::int64_t age_ns, bool late) noexcept;
+
+  [[nodiscard]] std::uint64_t delivered() const noexcept { return delivered_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t late() const noexcept { return late_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::int64_t age_ns() const noexcept { return age_ns_.load(std::memory_order_relaxed); }
+  /// Frames up to the last published one that became no picture, whatever the reason.
+  [[nodiscard]] std::uint64_t dropped() const noexcept;
+  /// Times that frames were missing between two published ones.
+  [[nodiscard]] std::uint64_t gaps() const noexcept { return gaps_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::uint64_t> delivered_{0};
+  std::atomic<std::uint64_t> next_frame_{0};
+  std::atomic<std::uint64_t> late_{0};
+  std::atomic<std::uint64_t> gaps_{0};
+  std::atomic<std::int64_t> age_ns_{0};
+};
+
+/// A LiveStatus as a line of text, with the rate since about a second ago. One a reader.
+class StatusLine {
+ public:
+  explicit StatusLine(const LiveStatus& status) noexcept : status_(&status) {}
+
+  /// "24.8/s, age 34 ms, 2 dropped in 1 gap, 0 late": into `room`, cut to it. Does not allocate.
+  [[nodiscard]] std::string_view print(std::int64_t now_ns, std::span<char> room) noexcept;
+
+ private:
+  const LiveStatus* status_;
+  bool begun_ = false;
+  double rate_hz_ = 0.0;
+  std::int64_t counted_ns_ = 0;
+  std::uint64_t counted_ = 0;
+};
+
+}  // namespace compueye::firmware

@@ -1,0 +1,211 @@
+// Nothing that somebody else does, or does not do, keeps a command from ending when it is asked to.
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "tests/firmware/cli_run/copied_board.hpp"
+
+using namespace compueye;
+using namespace compueye::test;
+
+namespace {
+
+/// A terminal, and what is on the other end of it.
+class PseudoTerminal {
+ public:
+  PseudoTerminal() : control_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+    if (control_ < 0 || ::grantpt(control_) != 0 || ::unlockpt(control_) != 0) return;
+    terminal_ = ::open(::ptsname(control_), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    const winsize size{30, 80, 0, 0};
+    ::ioctl(terminal_, TIOCSWINSZ, &size);
+  }
+  PseudoTerminal(const PseudoTerminal&) = delete;
+  PseudoTerminal& operator=(const PseudoTerminal&) = delete;
+  ~PseudoTerminal() {
+    ::close(terminal_);
+    ::close(control_);
+  }
+  [[nodiscard]] int fd() const { return terminal_; }
+  /// What was shown since the last time.
+  [[nodiscard]] std::string shown() const {
+    std::string all;
+    char piece[4096];
+    for (ssize_t n = 0; (n = ::read(control_, piece, sizeof piece)) > 0;)
+      all.append(piece, static_cast<std::size_t>(n));
+    return all;
+  }
+  /// Nobody reads any more, and there is no room.
+  [[nodiscard]] bool full() const {
+    int waiting = 0;
+    return ::ioctl(control_, FIONREAD, &waiting) == 0 && waiting > 3000;
+  }
+
+ private:
+  int control_;
+  int terminal_ = -1;
+};
+
+template <class True>
+bool comes_true(Program& program, True holds) {
+  constexpr std::chrono::seconds limit{60};
+  const auto began = std::chrono::steady_clock::now();
+  while (program.running() && std::chrono::steady_clock::now() - began < limit) {
+    if (holds()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return false;
+}
+
+int waiting_in(int pipe) {
+  int bytes = 0;
+  return ::ioctl(pipe, FIONREAD, &bytes) == 0 ? bytes : 0;
+}
+
+/// There are bytes in it, and while frames come no more go in.
+bool stays_full(int pipe) {
+  const int before = waiting_in(pipe);
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  return before > 3000 && waiting_in(pipe) == before;
+}
+
+std::uintmax_t size_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(file, error);
+  return error ? 0 : size;
+}
+
+}  // namespace
+
+TEST_CASE("a terminal that takes nothing holds neither the frames nor the end of a run") {
+  ::setenv("TERM", "xterm", 1);
+  for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
+    const CopiedBoard board;
+    const PseudoTerminal terminal;
+    const auto file = board.outside("eye.rec");
+    Program program(board.run_arguments({"--frames", "0", "--record", file.string()}), terminal.fd(), terminal.fd());
+    REQUIRE(comes_true(program, [&] { return terminal.full(); }));
+    const auto at = size_of(file);
+    CHECK(comes_true(program, [&] { return size_of(file) > at + 10'000; }));
+    program.signal(number);
+    const Ended ended = program.wait();
+    CHECK_FALSE(ended.timed_out);
+    CHECK(ended.exit_code >= 0);  // 1 when its summary had no room either
+    CHECK(ended.exit_code <= 1);
+  }
+}
+
+TEST_CASE("a reader of the pictures that sleeps does not hold the run, whose files are whole") {
+  const CopiedBoard board;
+  int pipe[2];
+  REQUIRE(::pipe2(pipe, O_CLOEXEC) == 0);
+  ::fcntl(pipe[1], F_SETPIPE_SZ, 4096);
+  const auto file = board.outside("eye.rec");
+  Program program(board.run_arguments({"--frames", "0", "--show", "--record", file.string()}), pipe[1]);
+  CHECK(comes_true(program, [&] { return size_of(file) > 20'000; }));
+  program.signal(SIGTERM);
+  const Ended ended = program.wait();
+  CHECK_FALSE(ended.timed_out);
+  CHECK(contains(test::compueye({"replay", file.string()}).out, "ended: stopped"));
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+}
+
+TEST_CASE("a pipe that nobody reads is refused before the set-up") {
+  const CopiedBoard board;
+  const std::string pipe = board.outside("pipe.npy").string();
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  const std::string at = board.path().string();
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"record", "--board", at, "--out", pipe},
+        std::vector<std::string>{"run", "--board", at, "--frames", "0", "--record", pipe},
+        std::vector<std::string>{"simulate", "--board", at, "--out", pipe},
+        std::vector<std::string>{"response", "--board", at, "--out", pipe}}) {
+    const Ended ended = test::compueye(arguments);
+    CAPTURE(ended.err);
+    CHECK(ended.exit_code == 1);
+    CHECK_FALSE(ended.timed_out);
+  }
+}
+
+TEST_CASE("a second signal ends at once what the first one could not") {
+  const CopiedBoard board;
+  const auto pipe = board.outside("pipe");
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  REQUIRE(reader >= 0);
+  ::fcntl(reader, F_SETPIPE_SZ, 4096);
+  Program program({"record", "--board", board.path().string(), "--frames", "0", "--out", pipe.string()});
+  // What is recorded then waits for a reader that never comes.
+  REQUIRE(comes_true(program, [&] { return stays_full(reader); }));
+  program.signal(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  REQUIRE(program.running());
+  program.signal(SIGINT);
+  const Ended ended = program.wait();
+  CHECK(ended.exit_code == 128 + SIGINT);
+  CHECK(contains(ended.err, "signal"));
+  ::close(reader);
+}
+
+TEST_CASE("every signal that asks a command to stop is heard by one that computes, too") {
+  const CopiedBoard board;
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    const auto out = board.outside("y.npy");
+    Program program({"simulate", "--board", board.path().string(), "--frames", "1000000", "--out", out.string()});
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    program.signal(number);
+    const Ended ended = program.wait();
+    CHECK(ended.exit_code == 1);
+    CHECK(contains(ended.err, "compueye: "));
+    CHECK_FALSE(std::filesystem::exists(out));
+    CHECK(partial_files(out.parent_path()) == 0);
+  }
+}
+
+TEST_CASE("the cursor is given back by Ctrl-Z and by a second signal, and hidden again when the run goes on") {
+  ::setenv("TERM", "xterm", 1);
+  const CopiedBoard board;
+  const PseudoTerminal terminal;
+  const auto pipe = board.outside("pipe");
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  REQUIRE(reader >= 0);
+  ::fcntl(reader, F_SETPIPE_SZ, 4096);
+  Program program(board.run_arguments({"--frames", "0", "--record", pipe.string()}), terminal.fd());
+  std::string shown;
+  const auto shows = [&](const std::string& what) {
+    return [&, what] {
+      shown += terminal.shown();
+      return contains(shown, what);
+    };
+  };
+  REQUIRE(comes_true(program, shows("frame ")));
+  shown.clear();
+  program.signal(SIGTSTP);
+  CHECK(comes_true(program, shows("\x1b[?25h")));
+  shown.clear();
+  program.signal(SIGCONT);
+  CHECK(comes_true(program, shows("\x1b[?25l")));
+  // The recorder's pipe is full by then, or soon: only a second signal ends the run.
+  REQUIRE(comes_true(program, [&] {
+    shown = terminal.shown();
+    return stays_full(reader);
+  }));
+  program.signal(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  shown = terminal.shown();
+  program.signal(SIGTERM);
+  CHECK(program.wait().exit_code == 128 + SIGTERM);
+  shown += terminal.shown();
+  CHECK(contains(shown, "\x1b[?25h"));
+  ::close(reader);
+}
