@@ -155,10 +155,9 @@ Action declare(OptionList& options) {
 }
 
 std::string footer() {
-  return "Ctrl-C ends the recording and keeps what it has, with exit code 0; a second one at once. So does a power cut "
-         "or kill -9: all but "
-         "the last block is in the file, and `compueye replay` says what is. docs/recordings.md describes the "
-         "format.\n\n"
+  return "Ctrl-C ends the recording and keeps what it has, with exit code 0; a second one ends it at once. A power cut "
+         "or kill -9 keeps all but the last block, and `compueye replay` says what is there. docs/recordings.md "
+         "describes the format.\n\n"
          "Built-in scenes:\n" +
          built_in_scene_help() +
          "\nExamples:\n"
