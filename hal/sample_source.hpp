@@ -51,6 +51,10 @@ class SampleSource {
   /// Since the last start(): produced by the device = delivered by read() + dropped by reason.
   [[nodiscard]] FrameAccount account() const noexcept { return do_account(); }
 
+  /// Whether it lost its device or its stream and is getting it back; from any thread. read() times out meanwhile, and
+  /// this ends by itself, in a time that the source bounds: with a frame, or with a read() that says `disconnected`.
+  [[nodiscard]] bool recovering() const noexcept { return do_recovering(); }
+
   /// What else this kind of source counts, since the last start(): what went wrong and was mended. Always the same
   /// rows in the same order, none where there is nothing to tell. Not for the frame path: it allocates.
   [[nodiscard]] std::vector<Counter> counters() const { return do_counters(); }
@@ -61,6 +65,7 @@ class SampleSource {
   virtual Result<SampleBlock> do_read(std::int64_t deadline_ns) = 0;
   virtual void do_stop() noexcept = 0;
   [[nodiscard]] virtual FrameAccount do_account() const noexcept = 0;
+  [[nodiscard]] virtual bool do_recovering() const noexcept { return false; }
   [[nodiscard]] virtual std::vector<Counter> do_counters() const { return {}; }
 
   bool started_ = false;

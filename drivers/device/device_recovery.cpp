@@ -266,6 +266,7 @@ void DeviceSource::fail(Failure why, hal::Error error) {
   if (quiet_since_ns_) extent_.saw_quiet(*quiet_since_ns_);
   pages_.reset();
   machine_.failed(why, now_ns);
+  recovering_.store(machine_.state() != MachineState::given_up, std::memory_order_relaxed);
   if (machine_.state() == MachineState::given_up) {
     ++failures_[Failure::gave_up];
     gave_up_after_ns_ = machine_.outage_ns(now_ns);

@@ -79,6 +79,7 @@ hal::Result<void> DeviceSource::do_start() {
   stream_base_ = stream_overruns_ = estimated_ = 0;
   auto reached = get_to(MachineState::read, settings_.start_limit_ns);
   machine_.run_with(settings_.recovery_limit_ns);
+  recovering_.store(false, std::memory_order_relaxed);
   run_config_id_ = configuration_.config_id;
   return reached;
 }
@@ -152,6 +153,7 @@ void DeviceSource::saw_frame(hal::SampleBlock& block) noexcept {
   block.config_id = run_config_id_;
   if (std::exchange(clock_anew_, false)) block.flags.time_ok = false;
   machine_.saw_frame();
+  recovering_.store(false, std::memory_order_relaxed);
   extent_.saw_frame(block.frame - stream_base_, clock_.now_ns(), waited_);
   quiet_since_ns_.reset();
   bytes_since_frame_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -73,6 +74,7 @@ class DeviceSource final : public hal::SampleSource {
   hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override;
   void do_stop() noexcept override;
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override;
+  [[nodiscard]] bool do_recovering() const noexcept override { return recovering_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::vector<hal::Counter> do_counters() const override { return failures().counters(); }
   [[nodiscard]] std::optional<hal::SampleBlock> read_stream(std::int64_t deadline_ns);
   void saw_frame(hal::SampleBlock& block) noexcept;
@@ -109,6 +111,7 @@ class DeviceSource final : public hal::SampleSource {
   bool transport_open_ = false;
   DeviceRequests requests_;
   DeviceMachine machine_;
+  std::atomic<bool> recovering_{false};
   FailureCounters failures_;
   hal::Error last_error_;
   std::int64_t gave_up_after_ns_ = 0;

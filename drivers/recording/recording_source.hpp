@@ -70,6 +70,7 @@ class RecordingSource final : public hal::SampleSource {
   hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override;
   void do_stop() noexcept override;
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override { return source_.account(); }
+  [[nodiscard]] bool do_recovering() const noexcept override { return source_.recovering(); }
   [[nodiscard]] std::vector<hal::Counter> do_counters() const override { return source_.counters(); }
 
   void keep(const hal::SampleBlock& block) noexcept;

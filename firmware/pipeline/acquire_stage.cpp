@@ -44,6 +44,11 @@ bool AcquireStage::goes_on_after(hal::Error& error, std::int64_t waited_ns) noex
   switch (error.code) {
     case hal::ErrorCode::timeout:
       ++read_timeouts_;
+      if (source_.recovering()) {
+        recovering_ns_ += waited_ns;
+        silent_ns_ = 0;
+        return true;
+      }
       silent_ns_ += waited_ns;
       if (settings_.silence_limit_ns == 0 || silent_ns_ < settings_.silence_limit_ns) return true;
       control_.end_input({hal::ErrorCode::timeout, source_.describe().serial,

@@ -31,6 +31,7 @@ class AcquireStage {
   // After the thread was joined:
   [[nodiscard]] hal::FrameAccount account() const noexcept;
   [[nodiscard]] std::uint64_t read_timeouts() const noexcept { return read_timeouts_; }
+  [[nodiscard]] std::int64_t recovering_ns() const noexcept { return recovering_ns_; }
   [[nodiscard]] std::uint64_t overrun_flags() const noexcept { return overrun_flags_; }
   [[nodiscard]] std::uint64_t dark_frames() const noexcept { return dark_frames_; }
   [[nodiscard]] std::uint64_t untrusted_times() const noexcept { return untrusted_times_; }
@@ -48,6 +49,7 @@ class AcquireStage {
   hal::FrameAccount own_;
   std::uint64_t pushed_ = 0;
   std::int64_t silent_ns_ = 0;  // time in reads that timed out since the last frame
+  std::int64_t recovering_ns_ = 0;
   std::uint64_t read_timeouts_ = 0;
   std::uint64_t overrun_flags_ = 0;
   std::uint64_t dark_frames_ = 0;

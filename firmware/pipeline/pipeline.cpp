@@ -115,6 +115,7 @@ void fill(RunSummary& summary, const Stages& stages, const hal::FrameAccount& so
                     .dark_frames = stages.acquire.dark_frames(),
                     .untrusted_times = stages.acquire.untrusted_times(),
                     .config_mismatches = stages.correct.config_mismatches()};
+  summary.recovering_ns = stages.acquire.recovering_ns();
   summary.correct = stages.correct.times();
   summary.solve = stages.reconstruct.times();
   summary.write = stages.publish.write_times();
@@ -180,9 +181,10 @@ RunSummary Pipeline::run(const std::atomic<bool>& stop) {
   const hal::Result<void> ran = run_threads(*stages, control);
   summary.wall_ns = s.clock.now_ns() - begin_ns;
 
+  // stop() asks the device what it made last: the books are those after it.
+  s.source.stop();
   fill(summary, *stages, s.source.account());
   summary.source_counters = s.source.counters();
-  s.source.stop();
   auto closed = s.sink.close();
   summary.ending = control.ending();
   summary.error = control.error();

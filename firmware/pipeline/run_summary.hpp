@@ -65,6 +65,7 @@ struct RunSummary {
   TimeStatistics write;               ///< sink, one frame
   TimeStatistics age;                 ///< start of exposure to the end of the sink's write, delivered frames
   std::uint64_t deadline_misses = 0;  ///< delivered frames older than the deadline
+  std::int64_t recovering_ns = 0;     ///< in which the source was getting its device back
   std::int64_t wall_ns = 0;           ///< from start of the source to the end of the last stage
   int masked_min = 0;                 ///< seeing channels at weight zero, over frames with a readable block
   int masked_max = 0;

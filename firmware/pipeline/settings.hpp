@@ -20,8 +20,10 @@ struct PipelineSettings {
   /// frame at most waits for the solver, since any older one would only be older.
   int queue_capacity = 4;
 
-  std::int64_t read_timeout_ns = 100'000'000;     ///< > 0: longest single read; how fast a stop request is noticed
-  std::int64_t silence_limit_ns = 5'000'000'000;  ///< >= 0: a source silent for so long has failed; 0: wait for ever
+  std::int64_t read_timeout_ns = 100'000'000;  ///< > 0: longest single read; how fast a stop request is noticed
+  /// >= 0: a source silent for so long has failed; 0: wait for ever. Not while it is SampleSource::recovering(), which
+  /// has a limit of its own: longer than a source takes to find out that it should.
+  std::int64_t silence_limit_ns = 5'000'000'000;
   DeviceClock device_clock = DeviceClock::host;
   bool stop_on_sink_failure = true;     ///< false: count the frame as sink_failed and go on
   std::uint64_t config_patience = 100;  ///< consecutive frames with a foreign config_id that end the run; 0: never

@@ -195,7 +195,8 @@ PipelineSettings BoardRun::pipeline_settings() const {
   if (options_.waits_for_frames()) settings.queue_capacity = 1;
   // The simulated device counts its time from its own power-on, as a real one does.
   settings.device_clock = DeviceClock::free_running;
-  settings.silence_limit_ns += static_cast<std::int64_t>(2e9 / std::max(board_.source.frame_rate_hz, 1e-3));
+  // A source finds out in five periods that it has to recover.
+  settings.silence_limit_ns += static_cast<std::int64_t>(6e9 / std::max(board_.source.frame_rate_hz, 1e-3));
   settings.correction = correction_settings(board_, eye().sees());
   return settings;
 }

@@ -157,7 +157,7 @@ void tell_frames(Figures& f, const RunReport& report) {
   f.tell(
       "frames: {frames.produced} produced = {frames.delivered} delivered + {frames.dropped:sum} dropped"
       "[ ({frames.dropped})][, {frames.estimated} of them by estimate]; {pacing}; ended: {ending} after "
-      "{wall_s:duration}\n");
+      "{wall_s:duration}[, {recovering_s:duration} of it without frames, to get the eye back]\n");
   if (report.deadline) f.say(report.deadline->sentence() + "\n");
   if (report.ladder) f.say(report.ladder->sentence() + "\n" + steps_text(*report.ladder) + "\n");
   if (report.deadline || report.ladder) f.tell("deadline misses: {deadline.misses} of {frames.delivered}\n");
@@ -252,6 +252,7 @@ Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& 
             {"frames", figures_of(s.frames)},
             {"stages", stage_figures(s.stages)},
             {"wall_s", ms(s.wall_ns) / 1e3},
+            {"recovering_s", ms(s.recovering_ns) / 1e3},
             {"solve_ms", times_figures(s.solve)},
             {"age_ms", times_figures(s.age)},
             {"correct_ms", times_figures(s.correct)},

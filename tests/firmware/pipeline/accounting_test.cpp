@@ -242,6 +242,35 @@ TEST_CASE("a source that falls silent has failed, short pauses are only counted"
   CHECK(summary.health.read_timeouts == 3 * 9 + 10);
 }
 
+TEST_CASE("a source that recovers is waited for, as long as it says so, and the summary tells how long that was") {
+  Rig rig;
+  rig.settings.read_timeout_ns = 10'000'000;
+  rig.settings.silence_limit_ns = 100'000'000;
+  rig.source.ending = ScriptEnd::silence;
+  rig.source.script = [](std::uint64_t index) {
+    ScriptedFrame frame;
+    frame.timeouts_before = index == 5 ? 3000 : 0;
+    return frame;
+  };
+  rig.source.recovers = [&] { return rig.clock.now_ns() <= 30'000'000'000; };
+  const RunSummary summary = rig.run();
+  CHECK(summary.frames.delivered == 10);
+  CHECK(summary.recovering_ns == 30'000'000'000);
+  // Silence that is none of it has its limit still.
+  CHECK(summary.ending == Ending::source_failed);
+  REQUIRE(summary.error.has_value());
+  check_error(*summary.error, ErrorCode::timeout, "scripted-1", {"100"});
+}
+
+TEST_CASE("what a source finds out when it is stopped is in the books of the run") {
+  Rig rig;
+  rig.source.frames_lost_at_stop = 7;
+  const RunSummary summary = rig.run();
+  CHECK(summary.frames.produced == 17);
+  CHECK(summary.frames.drops(DropReason::stopped) == 7);
+  CHECK(summary.stages.source.produced == 17);
+}
+
 TEST_CASE("a source or a sink that does not begin leaves the other alone") {
   Rig rig;
   rig.source.may_start = false;

@@ -27,6 +27,11 @@ hal::Result<void> ScriptedSource::do_start() {
   return {};
 }
 
+void ScriptedSource::do_stop() noexcept {
+  account_.produced += frames_lost_at_stop;
+  account_.drops(hal::DropReason::stopped) += frames_lost_at_stop;
+}
+
 hal::FrameAccount ScriptedSource::do_account() const noexcept {
   hal::FrameAccount account = account_;
   if (lies_about_its_account) ++account.produced;

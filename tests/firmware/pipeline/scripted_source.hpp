@@ -38,6 +38,8 @@ class ScriptedSource final : public hal::SampleSource {
   std::function<ScriptedFrame(std::uint64_t index)> script;  ///< of the index-th frame delivered; empty: all plain
   std::function<void(std::uint64_t index)> before_read;      ///< on the acquire thread, before each read
   bool may_start = true;
+  std::function<bool()> recovers;         ///< recovering(); empty: never
+  std::uint64_t frames_lost_at_stop = 0;  ///< that only stop() finds out
   bool lies_about_its_account = false;
   hal::SourceDescription description;
   std::vector<hal::Counter> tells;  ///< counters()
@@ -50,7 +52,8 @@ class ScriptedSource final : public hal::SampleSource {
   const hal::SourceDescription& do_describe() const noexcept override { return description; }
   hal::Result<void> do_start() override;
   hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override;
-  void do_stop() noexcept override {}
+  void do_stop() noexcept override;
+  bool do_recovering() const noexcept override { return recovers && recovers(); }
   hal::FrameAccount do_account() const noexcept override;
   std::vector<hal::Counter> do_counters() const override { return tells; }
   hal::Result<hal::SampleBlock> at_the_end(std::int64_t deadline_ns);
