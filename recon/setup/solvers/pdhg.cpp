@@ -101,7 +101,7 @@ struct Method {
         penalty_levels(from.objective, plan, from.rho_by_rule, classes.rows(), classes.count() > 1);
     problem->schedule = schedule_of<T>(levels, from.kept);
     problem->dual_step =
-        from.kept.keep_view(dual_step_tables<T>(classes, from.factor.values, plan.rank, levels.penalties, share));
+        from.kept.keep_view(TRY(dual_step_tables<T>(classes, from.factor.values, plan.rank, levels.penalties, share)));
     problem->dual_step.crew = from.crew;
     return problem;
   }

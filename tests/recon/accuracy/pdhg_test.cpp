@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -9,7 +11,10 @@
 #include "recon/setup/leading_modes.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/solver_list.hpp"
+#include "tests/hal/error_check.hpp"
+#include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/random_problem.hpp"
+#include "tests/recon/reference/reference_solver.hpp"
 #include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;
@@ -77,9 +82,11 @@ recon::FrameInfo solved(const recon::Response& a, const Frame& frame, const reco
 
 namespace {
 
-/// F v from F's definition: eigenvectors of A A' are F's, so F (A A' v) is a function of the modes alone.
+/// F v, as much shorter as it is stored, from F's definition: eigenvectors of A A' are F's, so F (A A' v) is a function
+/// of the modes alone.
 std::vector<double> deflated_by_definition(const recon::ParityClasses& classes, const std::vector<float>& modes,
-                                           int rank, double step, double share, const std::vector<float>& v) {
+                                           int rank, double step, double share, const std::vector<float>& v,
+                                           const recon::core::DeflatedStep<float>& stored, std::size_t level) {
   std::vector<double> expected(v.size(), 0.0);
   const float* values = modes.data();
   for (std::size_t c = 0; c < classes.count(); ++c) {
@@ -94,7 +101,10 @@ std::vector<double> deflated_by_definition(const recon::ParityClasses& classes, 
       if (p >= 0) in[static_cast<std::size_t>(p)] += classes.share(c, static_cast<int>(m)) * static_cast<double>(v[m]);
     }
     const float* vectors = values + count + 1;
-    for (std::size_t p = 0; p < size; ++p) moved[p] = gain(count) * in[p];
+    const double shorter = static_cast<double>(stored.parts[c].rest[level]) / gain(count);
+    CHECK(shorter <= 1.0);
+    CHECK(shorter > 0.88);  // by what rounding may have added
+    for (std::size_t p = 0; p < size; ++p) in[p] *= shorter, moved[p] = gain(count) * in[p];
     for (std::size_t k = 0; k < count; ++k) {
       double along = 0.0;
       for (std::size_t p = 0; p < size; ++p) along += static_cast<double>(vectors[p * count + k]) * in[p];
@@ -133,7 +143,7 @@ TEST_CASE("the deflated step is the matrix it stands for at every level, by pari
     const std::vector<double> penalties{20.0, 3.0, 70.0};
     const auto modes = recon::leading_modes(a, rank, {}).value();
     REQUIRE(modes.size() == recon::modes_size(classes, rank));
-    const auto tables = recon::dual_step_tables<float>(classes, modes, rank, penalties, share);
+    const auto tables = recon::dual_step_tables<float>(classes, modes, rank, penalties, share).value();
     REQUIRE(tables.view.levels == penalties.size());
     const auto order = static_cast<std::size_t>(a.rows());
     Random random(8);
@@ -141,7 +151,8 @@ TEST_CASE("the deflated step is the matrix it stands for at every level, by pari
     for (float& value : v) value = static_cast<float>(random.normal());
     for (std::size_t level = 0; level < penalties.size(); ++level) {
       recon::core::apply(tables.view, level, v.data(), out.data(), scratch.data());
-      const auto expected = deflated_by_definition(classes, modes, rank, 1.0 / penalties[level], share, v);
+      const auto expected =
+          deflated_by_definition(classes, modes, rank, 1.0 / penalties[level], share, v, tables.view, level);
       // Each of the modes passes with an error of 2^-9 of itself, in directions that have nothing to do with each
       // other.
       CHECK(distance(out, expected, v) <= 1.0 / 512.0);
@@ -158,6 +169,109 @@ TEST_CASE("the deflated step is the matrix it stands for at every level, by pari
       }
     }
   }
+}
+
+namespace {
+
+/// Dense rows of positive numbers: one mode far above many that are all alike, the hardest for rounded ones.
+recon::Response positive_rows(int rows, int image_rows, int image_cols, double floor = 0.0) {
+  Random random(11);
+  const int pixels = image_rows * image_cols;
+  std::vector<std::int64_t> start{0};
+  std::vector<std::int32_t> columns;
+  std::vector<double> values;
+  for (int m = 0; m < rows; ++m) {
+    for (int n = 0; n < pixels; ++n) {
+      columns.push_back(n);
+      values.push_back(floor + random.uniform());
+    }
+    start.push_back(static_cast<std::int64_t>(values.size()));
+  }
+  return recon::Response::from_csr(rows, pixels, start, columns, values)
+      .value()
+      .with_image(image_rows, image_cols)
+      .value();
+}
+
+/// The stored F and (I + A A' / (penalty (1 - share)))^(-1), which it may nowhere exceed.
+struct DenseSteps {
+  Eigen::MatrixXd stored, bound;
+};
+
+DenseSteps dense_steps(const recon::Response& a, int rank, double penalty, double share) {
+  const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a));
+  const auto modes = recon::leading_modes(a, rank, {}).value();
+  const auto tables = recon::dual_step_tables<double>(classes, modes, rank, {penalty}, share).value();
+  const auto order = static_cast<Eigen::Index>(a.rows());
+  DenseSteps steps{Eigen::MatrixXd(order, order), Eigen::MatrixXd::Identity(order, order)};
+  std::vector<double> scratch(tables.view.scratch_size());
+  for (Eigen::Index k = 0; k < order; ++k) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(order, k);
+    recon::core::apply(tables.view, 0, unit.data(), steps.stored.col(k).data(), scratch.data());
+  }
+  const Eigen::MatrixXd dense = dense_matrix(a);
+  steps.bound += dense * dense.transpose() / (penalty * (1.0 - share));
+  steps.bound = steps.bound.inverse().eval();
+  return steps;
+}
+
+}  // namespace
+
+TEST_CASE("the metric of the modes as they are stored keeps to the bound on the steps, whatever the response") {
+  const recon::Response eye = wide_eye();
+  struct Case {
+    recon::Response a;
+    int rank;
+    double penalty;
+  };
+  for (const Case& each : {Case{positive_rows(64, 16, 16), 64, 1.3}, Case{positive_rows(64, 16, 16), 20, 1.3},
+                           Case{positive_rows(84, 16, 16), 84, 0.02}, Case{eye.select_rows(eye.seeing_rows()), 96, 3.0},
+                           Case{without_symmetry(eye.select_rows(eye.seeing_rows())), 96, 3.0}}) {
+    CAPTURE(each.rank);
+    CAPTURE(each.penalty);
+    const DenseSteps steps = dense_steps(each.a, each.rank, each.penalty, 0.18);
+    const Eigen::MatrixXd symmetric = 0.5 * (steps.stored + steps.stored.transpose());
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> relative(symmetric, steps.bound,
+                                                                             Eigen::EigenvaluesOnly);
+    CHECK(relative.eigenvalues().maxCoeff() <= 1.0 + 1e-3);
+    CHECK(relative.eigenvalues().minCoeff() > 0.0);
+  }
+}
+
+TEST_CASE("pdhg finds the optimum of dense positive rows at its default settings") {
+  const recon::Response a = positive_rows(48, 12, 12);
+  Random random(12);
+  Frame frame;
+  std::vector<double> truth(static_cast<std::size_t>(a.cols()), 0.0), y(static_cast<std::size_t>(a.rows()));
+  for (double& value : truth) value = random.uniform() < 0.1 ? random.uniform() : 0.0;
+  a.forward(truth, y);
+  for (double& value : y) frame.y.push_back(static_cast<float>(value + 0.01 * random.normal()));
+  std::vector<double> samples(frame.y.begin(), frame.y.end());
+  for (const recon::BasisKind basis : {recon::BasisKind::identity, recon::BasisKind::dct}) {
+    for (const recon::ConstraintKind constraint :
+         {recon::ConstraintKind::none, recon::ConstraintKind::nonnegative, recon::ConstraintKind::box}) {
+      frame.objective = {};
+      frame.objective.basis = basis;
+      frame.objective.constraint = constraint;
+      frame.objective.lambda = basis == recon::BasisKind::identity ? 0.05 : 0.5;
+      const auto best = recon::reference::solve_reference(a, frame.objective, samples);
+      REQUIRE(best.converged);
+      const double found = solved(a, frame, plan_of(recon::solver_named("pdhg"), 3000)).objective;
+      CAPTURE(static_cast<int>(basis));
+      CAPTURE(static_cast<int>(constraint));
+      CHECK(found == doctest::Approx(best.objective).epsilon(0.003));
+    }
+  }
+}
+
+TEST_CASE("pdhg refuses steps that are longer than its modes are exact, and says how long they may be") {
+  const recon::Response a = positive_rows(64, 16, 16, 1e4);
+  Frame frame;
+  frame.objective.lambda = 0.1;
+  recon::Plan plan = plan_of(recon::solver_named("pdhg"), 10);
+  CHECK(recon::Reconstructor::create(a, frame.objective, plan).has_value());
+  plan.rho = 1.0;
+  test::check_error(recon::Reconstructor::create(a, frame.objective, plan), hal::ErrorCode::out_of_range, "rho", {});
 }
 
 TEST_CASE("a few modes make pdhg converge in tens of iterations, with and without symmetry") {
