@@ -77,6 +77,10 @@ hal::Result<void> check_fits(const hal::SourceDescription& source, const Board& 
                                source.channels, source.bits, board.name, board.eye.ommatidia(), board.sensor.bits));
 }
 
+std::unique_ptr<hal::ByteTransport> connect(const protocol::Bus& bus, const std::string& serial) {
+  return cable_on(bus).connect(serial);
+}
+
 AttachedEyes list_attached_eyes(hal::Clock& clock) {
   AttachedEyes found;
   for (const transport::Cable* cable : cables) {

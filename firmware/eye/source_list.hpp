@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "drivers/protocol/bus.hpp"
 #include "firmware/eye/board.hpp"
+#include "hal/byte_transport.hpp"
 #include "hal/clock.hpp"
 #include "hal/sample_source.hpp"
 #include "sim/scene.hpp"
@@ -30,6 +32,9 @@ struct EyeWanted {
 /// Whether a source is of as many channels and as deep as the board's eye. Error mismatch at `place`.
 [[nodiscard]] hal::Result<void> check_fits(const hal::SourceDescription& source, const Board& board,
                                            const std::string& place);
+
+/// The bare cable to an eye, not opened: to the one with this serial, or with an empty one to the first there is.
+[[nodiscard]] std::unique_ptr<hal::ByteTransport> connect(const protocol::Bus& bus, const std::string& serial);
 
 /// An eye on a cable: where it is, and what it says of itself or why it could not be asked.
 struct AttachedEye {

@@ -34,6 +34,7 @@ const std::map<std::string_view, Failing> failing{
     {"record", {"--board missing --out z.rec", "missing"}},
     {"replay", {"missing.rec", "missing.rec"}},
     {"devices", {"--boards missing", "missing"}},
+    {"conformance", {"--bus hid --serial missing", "missing"}},
 };
 
 std::vector<firmware::Option> options_of(const firmware::Command& command) {
