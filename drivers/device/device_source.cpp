@@ -112,12 +112,13 @@ std::optional<hal::SampleBlock> DeviceSource::read_stream(std::int64_t deadline_
     hand_over(deadline_ns);
     return std::nullopt;
   }
+  const std::int64_t now_ns = clock_.now_ns();
+  if (!quiet_since_ns_) quiet_since_ns_ = now_ns;
   if (bytes_since_frame_ > babble_bytes_ && quiet_for_too_long()) {
     fail_quiet();
     return std::nullopt;
   }
-  const std::int64_t now_ns = clock_.now_ns();
-  if (!quiet_since_ns_) quiet_since_ns_ = now_ns;
+  if (reader_->has_more()) return std::nullopt;
   const std::int64_t silent_ns = *quiet_since_ns_ + silence_ns_;
   const auto got = transport_->read(chunk_, std::min(deadline_ns, silent_ns));
   waited_ = clock_.now_ns() - now_ns > configuration_.period_ns() / 16;

@@ -9,6 +9,9 @@
 namespace compueye::device {
 namespace {
 
+// In vain, in one call: about a millisecond of work on a small board.
+constexpr std::size_t most_crc_bytes = std::size_t{1} << 20U;
+
 /// Frames out of a stream of packets.
 class PacketReader final : public StreamReader {
  public:
@@ -30,13 +33,14 @@ class PacketReader final : public StreamReader {
     packets_.feed(chunk);
   }
   [[nodiscard]] std::optional<hal::SampleBlock> take() noexcept override {
-    for (;;) {
+    for (std::size_t crc_bytes = most_crc_bytes;;) {
       if (auto block = frames_.take()) return block;
-      const auto packet = packets_.next();
+      const auto packet = packets_.next(crc_bytes);
       if (!packet) return std::nullopt;
       frames_.push(*packet);
     }
   }
+  [[nodiscard]] bool has_more() const noexcept override { return packets_.has_more(); }
   void stop(hal::DropReason reason) noexcept override { frames_.stop(reason); }
   void lose(std::uint64_t frames, hal::DropReason reason) noexcept override { frames_.lose(frames, reason); }
   [[nodiscard]] const hal::FrameAccount& account() const noexcept override { return frames_.account(); }

@@ -19,7 +19,7 @@ namespace compueye::device {
 /// Bytes of the stream in, whole frames out: what packets and reports have in common. Nothing allocates after
 /// construction.
 ///
-///   reader.push(chunk, exposed);                 // which must live until take() has returned nothing
+///   reader.push(chunk, exposed);                 // which must live until has_more() is false
 ///   while (const auto block = reader.take()) ...
 class StreamReader {
  public:
@@ -38,6 +38,8 @@ class StreamReader {
   virtual void push(std::span<const std::byte> chunk, std::uint64_t exposed) noexcept = 0;
   /// The next frame; valid until the next call of anything.
   [[nodiscard]] virtual std::optional<hal::SampleBlock> take() noexcept = 0;
+  /// take() returned nothing because that was enough work for one call: there is more to look at in the chunk.
+  [[nodiscard]] virtual bool has_more() const noexcept { return false; }
   /// Drops what is in hand as `reason`.
   virtual void stop(hal::DropReason reason) noexcept = 0;
   /// Counts frames that will never come.

@@ -35,19 +35,28 @@ PacketStream::PacketStream(const PacketLimits& limits)
       buffer_(least_packet_bytes + limits_.payload_bytes) {}
 
 void PacketStream::feed(std::span<const std::byte> chunk) noexcept {
+  has_more_ = false;
   if (!chunk_.empty()) skip(chunk_.size());
   chunk_ = chunk;
 }
 
 void PacketStream::reset() noexcept {
+  has_more_ = false;
   if (pending_bytes() > 0) skip(pending_bytes());
   begin_ = end_ = 0;
   chunk_ = {};
 }
 
-std::optional<Packet> PacketStream::next() noexcept {
+std::optional<Packet> PacketStream::next(std::size_t& crc_bytes) noexcept {
   FrameHeader header;
   std::size_t needed = 0;
+  has_more_ = false;
+  // Whether what was no packet may be followed by another look.
+  const auto goes_on = [&] {
+    crc_bytes -= std::min(crc_bytes, needed);
+    has_more_ = crc_bytes == 0;
+    return !has_more_;
+  };
   while (begin_ < end_) {
     begin_ += skip_to_magic(buffered());
     if (begin_ == end_) break;
@@ -56,6 +65,7 @@ std::optional<Packet> PacketStream::next() noexcept {
       if (!refill(needed)) return std::nullopt;
     } else if (found == Found::skipped) {
       ++begin_;
+      if (!goes_on()) return std::nullopt;
     } else {
       const std::byte* const at = buffer_.data() + begin_;
       begin_ += header.packet_bytes();
@@ -72,6 +82,7 @@ std::optional<Packet> PacketStream::next() noexcept {
     }
     if (found == Found::skipped) {
       chunk_ = chunk_.subspan(1);
+      if (!goes_on()) return std::nullopt;
       continue;
     }
     const std::byte* const at = chunk_.data();

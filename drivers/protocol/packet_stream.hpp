@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,6 +36,7 @@ struct StreamCounters {
 /// Packets that lie whole in a chunk are returned in place, without a copy; one that spans chunks is put together in a
 /// buffer of the longest packet, made at set-up. Nothing allocates afterwards. An accepted false packet would need a
 /// CRC-32C to match by chance. Work is bounded: each byte that is skipped costs at most one CRC of the longest packet.
+/// Who has less time than that looks on in pieces.
 ///
 ///   stream.feed(chunk);
 ///   while (const auto packet = stream.next()) ...
@@ -46,7 +48,14 @@ class PacketStream {
   /// asked for until then counts as skipped.
   void feed(std::span<const std::byte> chunk) noexcept;
   /// The next packet, or nothing: feed more.
-  [[nodiscard]] std::optional<Packet> next() noexcept;
+  [[nodiscard]] std::optional<Packet> next() noexcept {
+    std::size_t no_limit = std::numeric_limits<std::size_t>::max();
+    return next(no_limit);
+  }
+  /// As above, until the CRCs of what was no packet have covered `crc_bytes`, which what they covered is taken off.
+  [[nodiscard]] std::optional<Packet> next(std::size_t& crc_bytes) noexcept;
+  /// next() returned nothing because of its limit: call it again, and do not feed.
+  [[nodiscard]] bool has_more() const noexcept { return has_more_; }
   /// Forgets a half-received packet (counted as skipped): what follows is a new stream. Counters go on.
   void reset() noexcept;
 
@@ -72,6 +81,7 @@ class PacketStream {
   std::size_t begin_ = 0, end_ = 0;  // of what the buffer holds; not empty: the stream goes on there
   std::span<const std::byte> chunk_;
   std::size_t skipped_since_packet_ = 0;
+  bool has_more_ = false;
   StreamCounters counters_;
 };
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstring>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "drivers/transport/usb_error.hpp"
@@ -34,7 +35,12 @@ hal::Result<std::unique_ptr<UsbTransferRing>> UsbTransferRing::start(Settings se
   int code = ring->allocate() ? LIBUSB_SUCCESS : LIBUSB_ERROR_NO_MEM;
   if (code == LIBUSB_SUCCESS) code = ring->submit_free();
   if (code != LIBUSB_SUCCESS) return tl::unexpected(usb_error(code, ring->settings_.place, "starting the transfers"));
-  ring->thread_ = std::thread([each = ring.get()] { each->run(); });
+  try {
+    ring->thread_ = std::thread([each = ring.get()] { each->run(); });
+  } catch (const std::system_error& error) {
+    return hal::fail(hal::ErrorCode::no_space, ring->settings_.place,
+                     std::string("no thread to read the eye with: ") + error.what() + "; end other programs");
+  }
   return ring;
 }
 

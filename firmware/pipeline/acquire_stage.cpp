@@ -1,5 +1,6 @@
 #include "firmware/pipeline/acquire_stage.hpp"
 
+#include <exception>
 #include <string>
 #include <utility>
 
@@ -12,7 +13,7 @@ void AcquireStage::run() noexcept {
     RawSlot* const slot = out_.claim();
     if (slot == nullptr) break;
     const std::int64_t begin_ns = clock_.now_ns();
-    hal::Result<hal::SampleBlock> block = source_.read(begin_ns + settings_.read_timeout_ns);
+    hal::Result<hal::SampleBlock> block = read_source(begin_ns + settings_.read_timeout_ns);
     if (block) {
       take(*block, *slot);
     } else if (!goes_on_after(block.error(), clock_.now_ns() - begin_ns)) {
@@ -20,6 +21,15 @@ void AcquireStage::run() noexcept {
     }
   }
   out_.close();
+}
+
+/// Recovery allocates. The words fit an empty string.
+hal::Result<hal::SampleBlock> AcquireStage::read_source(std::int64_t deadline_ns) noexcept {
+  try {
+    return source_.read(deadline_ns);
+  } catch (const std::exception&) {
+    return hal::fail(hal::ErrorCode::no_space, "source", "out of memory");
+  }
 }
 
 void AcquireStage::take(const hal::SampleBlock& block, RawSlot& slot) noexcept {

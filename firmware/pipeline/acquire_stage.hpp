@@ -37,6 +37,7 @@ class AcquireStage {
   [[nodiscard]] std::uint64_t untrusted_times() const noexcept { return untrusted_times_; }
 
  private:
+  [[nodiscard]] hal::Result<hal::SampleBlock> read_source(std::int64_t deadline_ns) noexcept;
   void take(const hal::SampleBlock& block, RawSlot& slot) noexcept;
   [[nodiscard]] bool goes_on_after(hal::Error& error, std::int64_t waited_ns) noexcept;
 

@@ -18,7 +18,8 @@ enum class DeviceClock : std::uint8_t {
 /// With a free-running device clock the offset is taken from the frame of the last 256 to 512 that travelled fastest,
 /// which is assumed to have arrived one frame period after its exposure began (a frame cannot be complete earlier while
 /// the sensor integrates without pause). The window bounds what drift can add: 100 ppm over 512 frames at 100 Hz is
-/// 0.5 ms. Without a trusted time stamp (flags.time_ok false) the exposure is taken to begin one period before arrival.
+/// 0.5 ms. Without a trusted time stamp (flags.time_ok false) the exposure is taken to begin one period before arrival,
+/// and the offset is learnt anew: the clock was set.
 class DeviceTime {
  public:
   DeviceTime(DeviceClock relation, double frame_rate_hz) noexcept

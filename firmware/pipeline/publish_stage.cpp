@@ -1,5 +1,6 @@
 #include "firmware/pipeline/publish_stage.hpp"
 
+#include <exception>
 #include <utility>
 
 namespace compueye::firmware {
@@ -13,11 +14,19 @@ void PublishStage::run() noexcept {
   in_.abort();
 }
 
+hal::Result<void> PublishStage::write(const hal::Frame& frame) noexcept {
+  try {
+    return sink_.write(frame);
+  } catch (const std::exception&) {
+    return hal::fail(hal::ErrorCode::no_space, "sink", "out of memory");
+  }
+}
+
 void PublishStage::take(const PictureSlot& picture) noexcept {
   ++account_.produced;
   const hal::Frame frame{picture.pixels, format_, picture.stamp.frame, picture.stamp.t_ns};
   const std::int64_t begin_ns = clock_.now_ns();
-  hal::Result<void> written = sink_.write(frame);
+  hal::Result<void> written = write(frame);
   const std::int64_t end_ns = clock_.now_ns();
   write_times_.add(end_ns - begin_ns);
   if (written) {

@@ -40,6 +40,7 @@ class PublishStage {
   [[nodiscard]] std::uint64_t last_frame() const noexcept { return last_frame_; }
 
  private:
+  [[nodiscard]] hal::Result<void> write(const hal::Frame& frame) noexcept;
   void take(const PictureSlot& picture) noexcept;
   void delivered(const PictureSlot& picture, const hal::Frame& frame, std::int64_t age_ns) noexcept;
 

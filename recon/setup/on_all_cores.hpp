@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -26,7 +27,11 @@ bool on_all_cores(int count, std::string_view what, const Progress& progress, Wo
   };
   const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
   std::vector<std::thread> threads;
-  for (unsigned t = 0; t < std::min(cores, static_cast<unsigned>(count)); ++t) threads.emplace_back(body);
+  try {
+    for (unsigned t = 0; t < std::min(cores, static_cast<unsigned>(count)); ++t) threads.emplace_back(body);
+  } catch (const std::system_error&) {
+    if (threads.empty()) body();  // as many as there are will do
+  }
   while (done < count && !stop) {
     if (progress && !progress(what, done, count)) stop = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));

@@ -89,6 +89,7 @@ UsbDeviceModel::Transfer EmulatedUsbEye::read(std::span<std::byte> into) {
 }
 
 void EmulatedUsbEye::reset() {
+  if (at_reset) at_reset();
   when_there([](DeviceEmulator& device, std::int64_t now_ns) {
     device.reset_bus(now_ns);
     return Transfer{};

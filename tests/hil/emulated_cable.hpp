@@ -77,6 +77,7 @@ class EmulatedUsbEye final : public UsbDeviceModel {
   Transfer control(const Setup& setup, std::span<std::byte> data) override;
   Transfer read(std::span<std::byte> into) override;
   void reset() override;
+  std::function<void()> at_reset;  ///< the host resets the bus when it opens the eye
 
  private:
   Transfer standard(const Setup& setup, std::span<std::byte> data);

@@ -233,6 +233,39 @@ TEST_CASE("what looks like packets and is none ends, within the work that is pro
   CHECK(on_magics.pending_bytes() < header_bytes);
 }
 
+TEST_CASE("hostile garbage is looked through in pieces of bounded work, and a packet behind it is found") {
+  constexpr PacketLimits wide{65535, 65535};
+  std::vector<std::byte> bytes(std::size_t{1} << 16U);
+  FrameHeader hostile;
+  hostile.n_ch = 32760;
+  hostile.payload_bytes = 65520;
+  for (std::size_t at = 0; at + header_bytes <= bytes.size() / 2; at += header_bytes) {
+    store(hostile, std::span(bytes).subspan(at).first<header_bytes>());
+  }
+  const std::array<std::int32_t, 4> codes{1, 2, 3, 4};
+  FrameHeader sent;
+  sent.frame = 77;
+  REQUIRE(encode_data(sent, codes, 12, std::span(bytes).last(100)) > 0);
+  bytes.resize(bytes.size() + 65564);  // the CRC that each of them wants
+
+  PacketStream parser(wide);
+  parser.feed(bytes);
+  constexpr std::size_t most = std::size_t{1} << 20U;
+  int calls = 0;
+  std::optional<Packet> packet;
+  do {
+    const std::uint64_t before = parser.counters().crc_errors;
+    std::size_t crc_bytes = most;
+    packet = parser.next(crc_bytes);
+    CHECK(parser.counters().crc_errors - before <= most / 65564 + 1);
+    REQUIRE(++calls < 1000);
+  } while (!packet && parser.has_more());
+  REQUIRE(packet);
+  CHECK(packet->header.frame == 77);
+  CHECK(calls > 40);
+  CHECK_FALSE(parser.has_more());
+}
+
 TEST_CASE("an abandoned chunk and a reset count as skipped") {
   Random random(8);
   const SentStream stream = random_stream(random, 4, channels);

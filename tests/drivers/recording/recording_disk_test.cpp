@@ -2,7 +2,6 @@
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
-#include <pthread.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -17,12 +16,14 @@
 #include "drivers/recording/recording_source.hpp"
 #include "tests/drivers/recording/film_checks.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/no_threads.hpp"
 
 using namespace compueye;
 using namespace compueye::recording;
 using namespace compueye::recording::tests;
 using compueye::test::bytes_of;
 using compueye::test::check_error;
+using compueye::test::NoThreads;
 using compueye::test::TemporaryFolder;
 
 namespace {
@@ -106,28 +107,6 @@ struct Recorder {
     for (int k = 0; k < frames; ++k) static_cast<void>(source->read(clock.now_ns() + 100'000'000));
   }
   [[nodiscard]] std::string path() const { return folder / "eye.rec"; }
-};
-
-/// Threads get a stack that no memory has room for.
-class NoThreads {
- public:
-  NoThreads() {
-    pthread_getattr_default_np(&usual_);
-    pthread_attr_t huge;
-    pthread_getattr_default_np(&huge);
-    pthread_attr_setstacksize(&huge, std::size_t{1} << 50U);
-    pthread_setattr_default_np(&huge);
-    pthread_attr_destroy(&huge);
-  }
-  NoThreads(const NoThreads&) = delete;
-  NoThreads& operator=(const NoThreads&) = delete;
-  ~NoThreads() {
-    pthread_setattr_default_np(&usual_);
-    pthread_attr_destroy(&usual_);
-  }
-
- private:
-  pthread_attr_t usual_{};
 };
 
 /// No file grows beyond it, as on a full disk.

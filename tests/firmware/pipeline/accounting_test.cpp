@@ -2,6 +2,7 @@
 
 #include "tests/firmware/pipeline/rig.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/no_threads.hpp"
 
 using namespace compueye::firmware;
 using namespace compueye::firmware::tests;
@@ -214,6 +215,42 @@ TEST_CASE("a source that goes away ends the run with its error after the last fr
   CHECK(summary.error->code == ErrorCode::disconnected);
   CHECK(summary.error->text() == "scripted-1: the eye was unplugged");
   CHECK(summary.frames.delivered == 10);
+}
+
+TEST_CASE("a source or a sink that has no memory fails, and nothing is thrown out of a thread") {
+  Rig rig;
+  rig.source.before_read = [](std::uint64_t index) {
+    if (index == 5) throw std::bad_alloc();
+  };
+  const RunSummary summary = rig.run();
+  CHECK(summary.ending == Ending::source_failed);
+  REQUIRE(summary.error.has_value());
+  check_error(*summary.error, ErrorCode::no_space, "source", {});
+  CHECK(summary.frames.delivered == 5);
+
+  Rig other;
+  other.sink.on_write = [](const compueye::hal::Frame&) { throw std::bad_alloc(); };
+  auto pipeline = Pipeline::create(other.settings, other.source, other.solver, other.sink, other.clock);
+  REQUIRE(pipeline.has_value());
+  const RunSummary unwritten = pipeline->run(other.stop);
+  CHECK(unwritten.ending == Ending::sink_failed);
+  REQUIRE(unwritten.error.has_value());
+  check_error(*unwritten.error, ErrorCode::no_space, "sink", {});
+  CHECK(unwritten.frames.delivered == 0);
+}
+
+TEST_CASE("a run that gets no threads says so, and the next one has them") {
+  Rig rig;
+  auto pipeline = Pipeline::create(rig.settings, rig.source, rig.solver, rig.sink, rig.clock);
+  REQUIRE(pipeline.has_value());
+  {
+    const compueye::test::NoThreads refused;
+    const RunSummary summary = rig.checked(pipeline->run(rig.stop));
+    CHECK(summary.ending == Ending::internal_failure);
+    REQUIRE(summary.error.has_value());
+    check_error(*summary.error, ErrorCode::no_space, "pipeline", {});
+  }
+  CHECK(rig.checked(pipeline->run(rig.stop)).frames.delivered == 10);
 }
 
 TEST_CASE("a source that reports an interruption stops the run without an error") {

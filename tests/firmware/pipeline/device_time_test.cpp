@@ -70,3 +70,16 @@ TEST_CASE("a device clock that was set back is learnt anew") {
   }
   CHECK(time.exposure_start_ns(at(0), 200 * ms) == 190 * ms);
 }
+
+TEST_CASE("a device clock that was set back across a gap dates no frame early") {
+  // The frame behind the gap says that its time is doubtful; those after it are trusted, and later than any before.
+  for (const std::int64_t back : {100 * ms, 200 * ms, 259 * ms}) {
+    DeviceTime time(DeviceClock::free_running, 100.0);
+    for (int frame = 0; frame < 2000; ++frame) {
+      if (frame >= 1000 && frame < 1025) continue;
+      const std::int64_t truth = frame * 10 * ms;
+      const SampleBlock block = at(truth + 5000 * ms - (frame >= 1000 ? back : 0), frame != 1025);
+      CHECK(time.exposure_start_ns(block, truth + 10 * ms) == truth);
+    }
+  }
+}

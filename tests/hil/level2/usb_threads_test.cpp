@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <functional>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "hal/clock.hpp"
 #include "tests/drivers/protocol/wire_samples.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/no_threads.hpp"
 #include "tests/hil/level2/testbed.hpp"
 #include "tests/hil/usbfs_shim.hpp"
 
@@ -50,6 +53,7 @@ class ShimmedEye {
   }
   ShimmedEye(const ShimmedEye&) = delete;
   ShimmedEye& operator=(const ShimmedEye&) = delete;
+  void at_reset(std::function<void()> what) { eye_.at_reset = std::move(what); }
   [[nodiscard]] std::int64_t in_ms(std::int64_t ms) const { return clock.now_ns() + ms * 1'000'000; }
 
  private:
@@ -78,6 +82,25 @@ class ShimmedEye {
     MESSAGE("SKIPPED: " << why);                           \
     return;                                                \
   }
+
+TEST_CASE("an eye that gets no thread is an error, at the start and at a re-plug, and is read when there is one") {
+  SKIP_WITHOUT_UMOCKDEV();
+  ShimmedEye eye;
+  REQUIRE(eye.host.start());
+  for (int plug = 0; plug < 2; ++plug) {
+    REQUIRE(eye.host.frame());
+    eye.transport.close();
+    // libusb has its own thread by then, the transport has yet to make one.
+    std::optional<compueye::test::NoThreads> refused;
+    eye.at_reset([&] { refused.emplace(); });
+    const auto opened = eye.transport.open();
+    REQUIRE(refused);
+    refused.reset();
+    eye.at_reset(nullptr);
+    compueye::test::check_error(opened, hal::ErrorCode::no_space, "usb 1-4 (CE-1)", {});
+    REQUIRE(eye.host.start());
+  }
+}
 
 TEST_CASE("one thread reads every frame while another asks") {
   SKIP_WITHOUT_UMOCKDEV();
