@@ -46,6 +46,7 @@ struct Bus {
   int most_channels = 0, most_bits = 0;       ///< of an eye that it can carry
   std::optional<SampleFormat> only_format;    ///< the one that it carries; nothing: all
   UsbIdentity identity;                       ///< where it is plugged into USB
+  bool holds_back = false;                    ///< bytes that nobody reads wait in the device instead of being lost
   double emulated_bytes_per_s = 0.0;          ///< of an emulated link
   std::size_t emulated_max_packet_bytes = 0;  ///< of an emulated transport
 
@@ -65,6 +66,7 @@ inline constexpr Bus usb_bus{.name = "usb",
                              .most_bits = 24,
                              .only_format = std::nullopt,
                              .identity = {0x1209, 0x0001},
+                             .holds_back = true,
                              .emulated_bytes_per_s = 35e6,
                              .emulated_max_packet_bytes = 512};
 
@@ -78,8 +80,23 @@ inline constexpr Bus hid_bus{.name = "hid",
                              .most_bits = hid_bits,
                              .only_format = SampleFormat::u12,
                              .identity = {0x1209, 0x0002},
+                             .holds_back = false,
                              .emulated_bytes_per_s = 64e3,
                              .emulated_max_packet_bytes = hid_report_bytes};
+
+/// A UART, of 115,200 bits a second where nothing else is said. It is none of `buses`: no board can name it yet.
+inline constexpr Bus uart_bus{.name = "uart",
+                              .title = "UART",
+                              .framing = Framing::packets,
+                              .report_bytes = 0,
+                              .page_bytes = 256,
+                              .most_channels = 65535,
+                              .most_bits = 24,
+                              .only_format = std::nullopt,
+                              .identity = {},
+                              .holds_back = false,
+                              .emulated_bytes_per_s = 11'520,
+                              .emulated_max_packet_bytes = 1};
 
 inline constexpr std::array buses{&usb_bus, &hid_bus};
 
