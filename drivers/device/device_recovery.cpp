@@ -89,10 +89,12 @@ void DeviceSource::carry_out(Order order, std::int64_t until_ns) {
   if (order == Order::pause) return pause(std::min(machine_.resume_ns(), until_ns));
   blame_.reset();
   const std::int64_t began_ns = clock_.now_ns();
+  look_began_ns_ = began_ns;
   if (order == Order::descriptor && pages_ && began_ns - pages_ns_ >= settings_.start_limit_ns) {
     return fail(Failure::request_timeout, too_slow(settings_.start_limit_ns));
   }
   auto done = attempt(order, until_ns);
+  if (order != Order::open) saw_there(done);
   if (order == Order::descriptor && done && pages_) return;  // the next page
   // Cut short by the reader, a request is made again, and not before the reader's deadline has come; tries that
   // together took a device's whole time are one that failed.
@@ -145,14 +147,23 @@ hal::Result<void> DeviceSource::attempt(Order order, std::int64_t until_ns) {
 /// Waits on the old handle as long as there is one, so that an unplugging is seen when it happens.
 void DeviceSource::pause(std::int64_t until_ns) {
   if (transport_open_ && extent_.is_open()) {
+    look_began_ns_ = clock_.now_ns();
     const auto got = transport_->read(chunk_, until_ns);
+    saw_there(got);
     if (got || got.error().code == hal::ErrorCode::timeout) return;
     if (got.error().code == hal::ErrorCode::disconnected) {
-      extent_.saw_gone(clock_.now_ns());
+      saw_gone(clock_.now_ns());
       close_transport();
     }
   }
   clock_.sleep_until_ns(until_ns);
+}
+
+/// A wait that ends so has ended when the device went. After a long time in which nobody looked it may have gone at any
+/// time since it was last there, and no frame is invented.
+void DeviceSource::saw_gone(std::int64_t now_ns) noexcept {
+  const bool just_now = waited(now_ns) || now_ns - there_ns_ <= silence_ns_;
+  extent_.saw_gone(just_now ? now_ns : there_ns_);
 }
 
 void DeviceSource::close_transport() noexcept {
@@ -253,6 +264,7 @@ void DeviceSource::begin_stream() noexcept {
   quiet_since_ns_.reset();
   bytes_since_frame_ = held_bytes_ = 0;
   farewells_ = 0;
+  there_ns_ = now_ns;
   ask_time_ns_ = now_ns;
 }
 
@@ -262,7 +274,7 @@ void DeviceSource::fail(Failure why, hal::Error error) {
   ++failures_[why];
   last_error_ = std::move(error);
   if (was_reading) ++failures_[Failure::restart];
-  if (is_away(why) && why != Failure::open_failed) extent_.saw_gone(now_ns);
+  if (is_away(why) && why != Failure::open_failed) saw_gone(now_ns);
   if (quiet_since_ns_) extent_.saw_quiet(*quiet_since_ns_);
   pages_.reset();
   machine_.failed(why, now_ns);

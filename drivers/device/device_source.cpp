@@ -120,8 +120,10 @@ std::optional<hal::SampleBlock> DeviceSource::read_stream(std::int64_t deadline_
   }
   if (reader_->has_more()) return std::nullopt;
   const std::int64_t silent_ns = *quiet_since_ns_ + silence_ns_;
+  look_began_ns_ = now_ns;
   const auto got = transport_->read(chunk_, std::min(deadline_ns, silent_ns));
-  waited_ = clock_.now_ns() - now_ns > configuration_.period_ns() / 16;
+  saw_there(got);
+  waited_ = waited(clock_.now_ns());
   if (got && extent_.unseen(clock_.now_ns()) >= reader_->most_ahead()) {
     fail(Failure::late_reader,
          {hal::ErrorCode::timeout, serial_, "nobody read it for so long that frames have no number"});
@@ -175,7 +177,9 @@ bool DeviceSource::ask_time(std::int64_t deadline_ns) {
   const std::int64_t now_ns = clock_.now_ns();
   if (now_ns < ask_time_ns_) return true;
   if (now_ns >= deadline_ns) return false;
+  look_began_ns_ = now_ns;
   const auto status = requests_.status(deadline_ns);
+  saw_there(status);
   if (status) {
     if (status->boot_count == status_.boot_count) reader_->set_time(*status);
     ask_time_pause_.reset();
@@ -183,7 +187,7 @@ bool DeviceSource::ask_time(std::int64_t deadline_ns) {
   }
   if (requests_.cut_short()) return false;
   if (status.error().code == hal::ErrorCode::disconnected) {
-    extent_.saw_gone(clock_.now_ns());
+    saw_gone(clock_.now_ns());
     return true;  // read() will see it, too
   }
   ++failures_[status.error().code == hal::ErrorCode::timeout ? Failure::request_timeout : Failure::request_refused];

@@ -90,6 +90,15 @@ class DeviceSource final : public hal::SampleSource {
   void carry_out(Order order, std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> attempt(Order order, std::int64_t until_ns);
   void pause(std::int64_t until_ns);
+  void saw_gone(std::int64_t now_ns) noexcept;
+  template <class T>
+  void saw_there(const hal::Result<T>& looked) noexcept {
+    if (looked || looked.error().code != hal::ErrorCode::disconnected) there_ns_ = clock_.now_ns();
+  }
+  /// For the device, since look_began_ns_.
+  [[nodiscard]] bool waited(std::int64_t now_ns) const noexcept {
+    return now_ns - look_began_ns_ > configuration_.period_ns() / 16;
+  }
   [[nodiscard]] hal::Result<void> open();
   void close_transport() noexcept;
   [[nodiscard]] hal::Result<void> ping(std::int64_t until_ns);
@@ -141,7 +150,8 @@ class DeviceSource final : public hal::SampleSource {
   int late_reads_ = 1;                          // after the deadline, to put one frame together
   std::optional<std::int64_t> quiet_since_ns_;  // since when frames are waited for
   std::size_t bytes_since_frame_ = 0;
-  bool waited_ = false;         // for the last chunk
+  bool waited_ = false;  // for the last chunk
+  std::int64_t look_began_ns_ = 0, there_ns_ = 0;
   std::size_t held_bytes_ = 0;  // of the chunk, that the reader has yet to get
   int times_held_ = 0;
   int farewells_ = 0;             // tries to ask a device that was given up

@@ -59,8 +59,9 @@ std::uint64_t ExposureClock::exposed_before(std::int64_t t_ns) const noexcept {
 void StreamExtent::begin(std::uint32_t config_id, const protocol::Status& before, std::int64_t start_ns,
                          std::int64_t period_ns) noexcept {
   open_ = true;
-  idle_ = false;
+  idle_ = gone_ = false;
   come_ = 0;
+  come_ns_ = start_ns;
   period_ns_ = std::max<std::int64_t>(period_ns, 1);
   config_id_ = config_id;
   before_ = before;
@@ -82,9 +83,9 @@ StreamExtent::Frames StreamExtent::close(const protocol::Status& status, std::in
   open_ = false;
   if (status.boot_count != before_.boot_count) {
     const auto up_ns = static_cast<std::int64_t>(std::min(status.now_ns, static_cast<std::uint64_t>(never)));
-    std::int64_t end_ns = std::min({gone_ns_, stopped_ns_, now_ns - up_ns});
+    const std::int64_t end_ns = std::min({gone_ns_, stopped_ns_, now_ns - up_ns});
     const bool once = status.boot_count == before_.boot_count + 1;
-    if (!once && end_ns != gone_ns_) end_ns = std::min(end_ns, quiet_ns_);
+    if (!once && end_ns - 2 * period_ns_ > come_ns_) return {come_, 0, true};
     return {clock_.exposed_before(end_ns), 0, true};
   }
   // The counters of the stream before: START did not arrive.

@@ -38,9 +38,9 @@ class ExposureClock {
 /// Asked after the stream has ended, a device that has not started anew knows (STATUS: `frames`, `overruns`). One that
 /// has, or that was plugged in again, has forgotten: the frames are then those that ExposureClock gives until it
 /// started anew (its clock is 0 there), was stopped or was seen to be gone, whichever was earliest. One that can no
-/// longer be asked is taken to have stopped when its stream did; so is one that has started anew more than once without
-/// having been seen to be gone, since nobody knows when it did first. Those numbers are estimates, and so is one that
-/// stands for a count of the device that time has no room for.
+/// longer be asked is taken to have stopped when its stream did. Of one that has started anew more than once nobody
+/// knows when it did first: unless it was gone right behind a frame, its last frame is the one that came last. Those
+/// numbers are estimates, and so is one that stands for a count of the device that time has no room for.
 class StreamExtent {
  public:
   struct Frames {
@@ -55,6 +55,7 @@ class StreamExtent {
   /// As ExposureClock::saw_frame().
   void saw_frame(std::uint64_t device_frame, std::int64_t now_ns, bool waited_for) noexcept {
     come_ = device_frame + 1;
+    come_ns_ = now_ns;
     clock_.saw_frame(device_frame, now_ns, waited_for);
   }
   /// Frames that have been exposed since the last one that came.
@@ -62,9 +63,10 @@ class StreamExtent {
   /// More frames than these the device cannot have exposed: of those that the clock gives, 2 more, those of 100 ms (a
   /// transport that became faster) and 1/16 of the unseen ones (drift).
   [[nodiscard]] std::uint64_t most_exposed(std::int64_t now_ns) const noexcept;
-  /// The device was seen to be gone.
+  /// The device was seen to be gone; the first time counts.
   void saw_gone(std::int64_t t_ns) noexcept {
-    if (!idle_) gone_ns_ = std::min(gone_ns_, t_ns);
+    if (!idle_ && !gone_) gone_ns_ = t_ns;
+    gone_ = true;
   }
   /// It was stopped: RESET_PIPES was answered, or the bus was reset.
   void saw_stopped(std::int64_t t_ns) noexcept { stopped_ns_ = std::min(stopped_ns_, t_ns); }
@@ -81,9 +83,9 @@ class StreamExtent {
 
  private:
   bool open_ = false;
-  bool idle_ = false;
+  bool idle_ = false, gone_ = false;
   std::uint64_t come_ = 0;  // those before the frame after the last that came
-  std::int64_t period_ns_ = 1;
+  std::int64_t come_ns_ = 0, period_ns_ = 1;
   std::uint32_t config_id_ = 0;
   protocol::Status before_;
   std::int64_t gone_ns_ = 0, stopped_ns_ = 0, quiet_ns_ = 0;

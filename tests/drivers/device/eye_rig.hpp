@@ -72,14 +72,16 @@ class EyeRig {
       : EyeRig(emulator, source_settings(emulator.bus), std::make_unique<hal::VirtualClock>(10 * second)) {}
   EyeRig(const protocol::EmulatorSettings& emulator, DeviceSettings settings)
       : EyeRig(emulator, std::move(settings), std::make_unique<hal::VirtualClock>(10 * second)) {}
-  EyeRig(const protocol::EmulatorSettings& emulator, DeviceSettings settings, std::unique_ptr<hal::VirtualClock> time)
+  EyeRig(const protocol::EmulatorSettings& emulator, DeviceSettings settings, std::unique_ptr<hal::VirtualClock> time,
+         double drift_ppm = 0.0)
       : own_clock_(std::move(time)),
         clock(*own_clock_),
+        eye_clock(clock, drift_ppm),
         bits(emulator.descriptor.bits),
         shown(bits),
-        device(protocol::DeviceEmulator::create(emulator, shown.generator(), clock.now_ns()).value()) {
+        device(protocol::DeviceEmulator::create(emulator, shown.generator(), eye_clock.now_ns()).value()) {
     shown.watch(device);
-    auto transport = std::make_unique<TamperedTransport>(device, clock);
+    auto transport = std::make_unique<TamperedTransport>(device, eye_clock, &eye_clock);
     way = transport.get();
     made_ = DeviceSource::create(std::move(settings), std::move(transport), clock);
   }
@@ -94,6 +96,8 @@ class EyeRig {
   hal::Result<void> start() {
     shown.begin_run();
     next_frame_ = delivered_ = 0;
+    miscounted_ = 0;
+    last_frame_ns_ = clock.now_ns();
     return source().start();
   }
 
@@ -110,42 +114,73 @@ class EyeRig {
     REQUIRE(account.produced == block->frame + 1);
     REQUIRE(block->frame >= next_frame_);  // no frame twice, none out of order
     next_frame_ = block->frame + 1;
+    if (estimates_may_err) find_miscount(*block, account.estimated);
+    last_frame_ns_ = clock.now_ns();
     invalid_channels_ += check_codes(*block);
     return block;
   }
 
   /// Reads until a frame comes.
-  hal::Result<hal::SampleBlock> next_frame(std::int64_t wait_ns = 60 * second) {
+  hal::Result<hal::SampleBlock> next_frame(std::int64_t wait_ns = 60 * second, std::int64_t slice_ns = 100 * ms) {
     const std::int64_t until_ns = clock.now_ns() + wait_ns;
-    auto block = read();
-    while (!block && block.error().code == hal::ErrorCode::timeout && clock.now_ns() < until_ns) block = read();
+    auto block = read(slice_ns);
+    while (!block && block.error().code == hal::ErrorCode::timeout && clock.now_ns() < until_ns) block = read(slice_ns);
     return block;
   }
 
   void inject(EmulatorFault fault) {
-    if (!fault.at_frame && fault.at_ns == 0) fault.at_ns = clock.now_ns();
+    if (!fault.at_frame) fault.at_ns = eye_clock.at(fault.at_ns == 0 ? clock.now_ns() : fault.at_ns);
     device.inject(std::move(fault));
   }
 
   [[nodiscard]] std::uint64_t delivered() const { return delivered_; }
   [[nodiscard]] std::uint64_t invalid_channels() const { return invalid_channels_; }
 
+  /// What an eye that has forgotten made is estimated, and docs/faults.md says how far off: too few by the frames of
+  /// the outage at most, too many by those of 200 ms. Otherwise every frame has the number that it has in the run.
+  bool estimates_may_err = false;
+  /// By how many the books are off: too many are positive.
+  [[nodiscard]] std::int64_t miscounted() const { return miscounted_; }
+
  private:
   std::unique_ptr<hal::VirtualClock> own_clock_;
 
+  /// The frame's own samples tell which one it is; only an estimate since the last one may have moved the numbers.
+  void find_miscount(const hal::SampleBlock& block, std::uint64_t estimated) {
+    const std::uint64_t boots = source().failures()[Failure::rebooted];
+    const bool forgotten = boots != last_boots_ || estimated != last_estimated_;
+    last_boots_ = boots;
+    last_estimated_ = estimated;
+    if (!forgotten) return;
+    constexpr std::int64_t period_ns = 10 * ms, most_too_many = 200 * ms / period_ns;
+    const std::int64_t most_too_few = std::min<std::int64_t>((clock.now_ns() - last_frame_ns_) / period_ns + 2, 2000);
+    const std::int64_t before = miscounted_;
+    for (std::int64_t off = 0; off <= std::max(most_too_few, most_too_many); ++off) {
+      if (off <= most_too_few && wrong_codes(block, before - off) == 0) miscounted_ = before - off;
+      if (off <= most_too_many && wrong_codes(block, before + off) == 0) miscounted_ = before + off;
+      if (wrong_codes(block, miscounted_) == 0) return;
+    }
+  }
+
+  [[nodiscard]] std::uint64_t wrong_codes(const hal::SampleBlock& block, std::int64_t miscounted) const {
+    const std::uint64_t frame = block.frame - static_cast<std::uint64_t>(miscounted);
+    std::uint64_t wrong = 0;
+    for (std::size_t k = 0; k < block.codes.size(); ++k) {
+      wrong += block.valid[k] != 0 && block.codes[k] != protocol::tests::shown_code(frame, k, bits) ? 1 : 0;
+    }
+    return wrong;
+  }
+
   /// Every valid code is bit for bit what the eye showed in this frame.
   std::uint64_t check_codes(const hal::SampleBlock& block) const {
-    std::uint64_t invalid = 0, wrong = 0;
-    for (std::size_t k = 0; k < block.codes.size(); ++k) {
-      invalid += block.valid[k] == 0 ? 1 : 0;
-      wrong += block.valid[k] != 0 && block.codes[k] != protocol::tests::shown_code(block.frame, k, bits) ? 1 : 0;
-    }
+    const std::uint64_t wrong = wrong_codes(block, miscounted_);
     REQUIRE(wrong == 0);
-    return invalid;
+    return static_cast<std::uint64_t>(std::count(block.valid.begin(), block.valid.end(), 0));
   }
 
  public:
   hal::VirtualClock& clock;
+  DriftingClock eye_clock;
   int bits;
   RunGenerator shown;
   protocol::DeviceEmulator device;
@@ -154,6 +189,8 @@ class EyeRig {
  private:
   hal::Result<std::unique_ptr<DeviceSource>> made_;
   std::uint64_t next_frame_ = 0, delivered_ = 0, invalid_channels_ = 0;
+  std::int64_t miscounted_ = 0, last_frame_ns_ = 0;
+  std::uint64_t last_boots_ = 0, last_estimated_ = 0;
 };
 
 }  // namespace compueye::device::tests

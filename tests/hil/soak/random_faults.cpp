@@ -1,5 +1,7 @@
 #include "tests/hil/soak/random_faults.hpp"
 
+#include <algorithm>
+
 namespace compueye::hil {
 namespace {
 
@@ -21,6 +23,35 @@ Incident RandomFaults::next(std::int64_t now_ns) {
     incident.reader_sleeps_ns = up_to_ns(1500 * ms);
   }
   incident.over_ns = now_ns + incident.reader_sleeps_ns + 1000 * ms;
+  return incident;
+}
+
+Incident RandomFaults::meeting(std::int64_t now_ns) {
+  Incident incident;
+  for (std::uint64_t k = below(5); k > 0; --k) {
+    incident.faults.push_back(of_the_way(now_ns));
+    incident.faults.back().at_ns += up_to_ns(300 * ms);
+  }
+  if (below(2) == 0) {
+    incident.faults.push_back(
+        {.kind = FaultKind::lose_answers, .at_ns = now_ns + up_to_ns(200 * ms), .count = 1 + below(6)});
+  }
+  bool away = false, echo = false;
+  for (std::uint64_t k = 1 + below(3); k > 0; --k) {
+    std::vector<EmulatorFault> more;
+    add_of_the_device(more, now_ns + up_to_ns(300 * ms));
+    const auto any = [&](FaultKind kind) {
+      return std::any_of(more.begin(), more.end(), [&](const EmulatorFault& each) { return each.kind == kind; });
+    };
+    // One eye at a time goes, or it is another that comes back; three wrong echoes in a row end it.
+    const bool goes = any(FaultKind::unplug) || any(FaultKind::replug_other), wrong = any(FaultKind::wrong_echo);
+    if ((goes && away) || (wrong && echo)) continue;
+    away = away || goes;
+    echo = echo || wrong;
+    incident.faults.insert(incident.faults.end(), more.begin(), more.end());
+  }
+  if (below(4) == 0) incident.reader_sleeps_ns = up_to_ns(below(8) == 0 ? 800'000 * ms : 1500 * ms);
+  incident.over_ns = now_ns + incident.reader_sleeps_ns + 1500 * ms;
   return incident;
 }
 
