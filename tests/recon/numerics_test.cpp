@@ -89,6 +89,7 @@ TEST_CASE("the unit of A and of x does not matter: the picture follows it") {
   for (const auto basis : {BasisKind::identity, BasisKind::dct}) {
     Plan plan;
     plan.iterations = 300;
+    plan.measure_gap = true;
     const auto plain = Reconstructor::create(frame.a, make_objective(basis, ConstraintKind::box, 0.05), plan).value();
     const SolvedFrame expected = solve_frame(plain, scaled(frame.y, 1.0), weights);
     REQUIRE(expected.info.health == Health::converged);
@@ -149,6 +150,7 @@ TEST_CASE("converged means close to the optimum, whatever rho is") {
         plan.precision = precision;
         plan.rho = rho;
         plan.iterations = 2000;
+        plan.measure_gap = true;
         const auto solver = Reconstructor::create(frame.a, objective, plan);
         if (!solver) {
           CHECK(solver.error().code == ErrorCode::out_of_range);

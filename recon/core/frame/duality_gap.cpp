@@ -24,7 +24,8 @@ DualityGap<T>::DualityGap(const FrameProblem<T>& problem, bool wanted, Workspace
       n_(problem.pixels()),
       one_sided_(problem.constrained && problem.hi >= T(no_bound)),
       boxed_(problem.constrained && !one_sided_),
-      wanted_(wanted && (problem.bounded ? !boxed_ : (boxed_ || problem.lambda > T(0)))) {
+      defined_(problem.bounded ? !boxed_ : (boxed_ || problem.lambda > T(0))),
+      wanted_(wanted && defined_) {
   if (!wanted_) return;
   u_ = workspace.take<T>(problem.a.rows);
   if (problem.psi.kind != BasisKind::identity) {

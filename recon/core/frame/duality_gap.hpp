@@ -23,6 +23,9 @@ class DualityGap {
   /// Takes memory, and measures, only when `wanted` and defined.
   DualityGap(const FrameProblem<T>& problem, bool wanted, Workspace& workspace) noexcept;
 
+  /// Whether the problem has a gap, wanted or not: an l1 term or a box, and not an epsilon with a box.
+  [[nodiscard]] bool defined() const noexcept { return defined_; }
+
   /// `dual` is q, psi.coefficients() values within +-lambda; may be null for a basis that is the identity or meets no
   /// constraint. Negative when the gap is not wanted or not defined: a lambda of zero without a box, or an epsilon
   /// with one.
@@ -44,6 +47,7 @@ class DualityGap {
   std::size_t n_;
   bool one_sided_;  // x >= 0: A'u - Psi'q may be negative
   bool boxed_;
+  bool defined_;
   bool wanted_;  // and defined
   T* u_ = nullptr;
   T* white_ = nullptr;   // A 1, for tv

@@ -22,10 +22,9 @@ struct OperatingPoint {
 };
 
 enum class Health : std::uint8_t {
-  converged,    ///< both optimality residuals are below 1e-3 after the last iteration (fista, cp, pdhg: the duality
-                ///< gap is below 1e-3 of the objective; where there is none or, in pdhg, it is not measured, the last
-                ///< step was below 1e-6)
-  budget_used,  ///< exactly K iterations done, residuals above that: normal in real time
+  converged,    ///< the duality gap is below 1e-3 of the objective; where the problem has no gap, the last step was
+                ///< below 1e-6 (adm, admm: both residuals below 1e-3)
+  budget_used,  ///< exactly K iterations done, and a larger gap or none measured: normal in real time
   invalid,      ///< NaN or infinity in y or in the result, a weight outside 0..1, more reweighted channels than planned
                 ///< or buffers of the wrong size: x is all zero, and so are objective and residuals
 };

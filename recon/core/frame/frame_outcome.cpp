@@ -7,7 +7,6 @@ namespace compueye::recon::core {
 namespace {
 
 constexpr double converged_gap = 1e-3;
-constexpr double converged_step = 1e-6;
 
 }  // namespace
 
@@ -37,9 +36,10 @@ double l1_penalty(const FrameProblem<T>& problem, const T* coefficients) noexcep
 }
 
 template <class T>
-void judge_by_gap(const FrameProblem<T>& problem, double gap, FrameInfo& info) noexcept {
+void judge_by_gap(const FrameProblem<T>& problem, const DualityGap<T>& measured, double gap, double still,
+                  FrameInfo& info) noexcept {
   const double step = info.primal_residual > info.dual_residual ? info.primal_residual : info.dual_residual;
-  const bool settled = gap >= 0.0 ? gap <= converged_gap * info.objective : step < converged_step;
+  const bool settled = measured.defined() ? gap >= 0.0 && gap <= converged_gap * info.objective : step < still;
   info.duality_gap = problem.measure_gap ? gap : -1.0;
   info.iterations = problem.point.iterations;
   info.health = settled ? Health::converged : Health::budget_used;
@@ -51,12 +51,10 @@ template void evaluate(const FrameSamples<float>&, const float*, double, float*,
 template void evaluate(const FrameSamples<double>&, const double*, double, double*, FrameInfo&) noexcept;
 template double l1_penalty(const FrameProblem<float>&, const float*) noexcept;
 template double l1_penalty(const FrameProblem<double>&, const double*) noexcept;
-template void judge_by_gap(const FrameProblem<float>&, double, FrameInfo&) noexcept;
-template void judge_by_gap(const FrameProblem<double>&, double, FrameInfo&) noexcept;
+template void judge_by_gap(const FrameProblem<float>&, const DualityGap<float>&, double, double, FrameInfo&) noexcept;
+template void judge_by_gap(const FrameProblem<double>&, const DualityGap<double>&, double, double, FrameInfo&) noexcept;
 
 namespace {
-
-constexpr double converged_below = 1e-3;
 
 /// sqrt(square / size), the size being at least a ten-thousandth of `other` (squares: a hundredth in length).
 double relative(double square, double size, double other) noexcept {
@@ -76,13 +74,10 @@ void SplitResiduals::add(const T* x, const T* z, const T* before, const T* dual,
   of_duals += static_cast<double>(dot(dual, dual, n));
 }
 
-void SplitResiduals::judge(int iterations, FrameInfo& info) const noexcept {
+void SplitResiduals::tell(FrameInfo& info) const noexcept {
   const double variables = of_x > of_copies ? of_x : of_copies;
   info.primal_residual = relative(apart, variables, of_duals);
   info.dual_residual = relative(moved, of_duals, variables);
-  info.iterations = iterations;
-  const bool settled = info.primal_residual < converged_below && info.dual_residual < converged_below;
-  info.health = settled ? Health::converged : Health::budget_used;
 }
 
 template void SplitResiduals::add(const float*, const float*, const float*, const float*, std::size_t) noexcept;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "recon/core/frame/duality_gap.hpp"
 #include "recon/core/frame/frame_info.hpp"
 #include "recon/core/frame/frame_problem.hpp"
 #include "recon/core/frame/frame_samples.hpp"
@@ -22,11 +23,16 @@ void evaluate(const FrameSamples<T>& samples, const T* solution, double penalty,
 template <class T>
 [[nodiscard]] double l1_penalty(const FrameProblem<T>& problem, const T* coefficients) noexcept;
 
-/// Health of a first-order method, whose steps grow small long before the end where A is ill-conditioned: converged
-/// when the gap is at most 1e-3 of the objective, which is then several times closer to its optimum; where there is no
-/// gap (negative), when the larger residual, the last step, was below 1e-6. The gap is told where it was asked for.
+/// Health of an iterative method, whose steps grow small long before the end where A is ill-conditioned: converged when
+/// the gap is at most 1e-3 of the objective, which is then several times closer to its optimum. Nothing else proves
+/// that, so a frame whose gap was not measured has used its budget; where the problem has no gap to measure, the larger
+/// residual has to be below `still`. The gap is told where it was asked for.
 template <class T>
-void judge_by_gap(const FrameProblem<T>& problem, double gap, FrameInfo& info) noexcept;
+void judge_by_gap(const FrameProblem<T>& problem, const DualityGap<T>& measured, double gap, double still,
+                  FrameInfo& info) noexcept;
+
+/// `still` of methods whose steps grow small long before the end, and of those that split.
+inline constexpr double still_step = 1e-6, still_split = 1e-3;
 
 /// Squares over all copies of x after an iteration of a splitting method: how far they are from x, how far they moved,
 /// and the sizes to compare those with.
@@ -38,11 +44,10 @@ struct SplitResiduals {
   template <class T>
   void add(const T* x, const T* z, const T* before, const T* dual, std::size_t n) noexcept;
 
-  /// Fills in both residuals, the iterations and the health: converged when both are below 1e-3. They are those of Boyd
-  /// et al. 2011, section 3.3.1, relative to the sizes named there, or to a hundredth of the other size where that is
-  /// more: at an x that is exactly zero, or where constraint and l1 term are idle, rounding would never count as
-  /// converged.
-  void judge(int iterations, FrameInfo& info) const noexcept;
+  /// Fills in both residuals, which say how still the last iteration was, not how near the optimum is: those of Boyd et
+  /// al. 2011, section 3.3.1, relative to the sizes named there, or to a hundredth of the other size where that is
+  /// more, as at an x that is exactly zero, or where constraint and l1 term are idle.
+  void tell(FrameInfo& info) const noexcept;
 };
 
 }  // namespace compueye::recon::core

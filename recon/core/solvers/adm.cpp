@@ -67,10 +67,10 @@ class Adm {
     const double penalty = problem_.bounded ? magnitudes : static_cast<double>(problem_.lambda) * magnitudes;
     evaluate(step_.samples(), sparse_, penalty, step_.row_scratch(), info);
     if (problem_.bounded) info.objective = penalty;
-    info.duality_gap = gap_.measure(step_.samples(), sparse_, nullptr, info.objective);
     SplitResiduals residuals;
     residuals.add(point_, sparse_, before_, pull_, n_);
-    residuals.judge(problem_.point.iterations, info);
+    residuals.tell(info);
+    judge_by_gap(problem_, gap_, gap_.measure(step_.samples(), sparse_, nullptr, info.objective), still_split, info);
     const double most = static_cast<double>(problem_.epsilon) * (1.0 + bound_tolerance);
     if (problem_.bounded && !(info.residual <= most)) info.health = Health::budget_used;
     return all_finite(x_, n_);  // a clip would have turned NaN into a number

@@ -115,8 +115,10 @@ class Admm : public MadeInWorkspace {
     const T* penalised = sparse_basis_ ? coefficients_ : x_;
     const double penalty = reweights() ? weighted_penalty() : l1_penalty(problem_, penalised);
     evaluate(step_.samples(), x_, penalty, step_.row_scratch(), info);
-    if (!reweights()) info.duality_gap = gap_.measure(step_.samples(), x_, basis_dual(), info.objective);
-    residuals_.judge((reweights() ? 2 : 1) * problem_.point.iterations, info);
+    residuals_.tell(info);
+    const double gap = reweights() ? -1.0 : gap_.measure(step_.samples(), x_, basis_dual(), info.objective);
+    judge_by_gap(problem_, gap_, gap, still_split, info);
+    if (reweights()) info.iterations *= 2;
     return finite;
   }
 

@@ -46,7 +46,7 @@ class ChambollePock {
     // Relaxation may have carried them beyond their bounds.
     for (std::size_t k = 0; k < coefficient_count_; ++k) basis_dual_[k] = within(basis_dual_[k], problem_.lambda);
     info.primal_residual = moved_;
-    judge_by_gap(problem_, gap_.measure(samples_, projected_, basis_dual_, info.objective), info);
+    judge_by_gap(problem_, gap_, gap_.measure(samples_, projected_, basis_dual_, info.objective), still_step, info);
     return all_finite(x_, n_);  // the projection would have turned NaN into a number
   }
 

@@ -57,7 +57,7 @@ class Fista {
     synthesise(problem_.psi, last_, picture_, scratch_);
     evaluate(samples_, picture_, l1_penalty(problem_, last_), residual_, info);
     info.primal_residual = moved_;
-    judge_by_gap(problem_, gap_.measure(samples_, picture_, nullptr, info.objective), info);
+    judge_by_gap(problem_, gap_, gap_.measure(samples_, picture_, nullptr, info.objective), still_step, info);
     return all_finite(point_, n_);
   }
 

@@ -133,7 +133,8 @@ class Pdhg {
       penalised = coefficients_;
     }
     evaluate(dual_step_.samples(), gradient_, l1_penalty(problem_, penalised), dual_step_.row_scratch(), info);
-    judge_by_gap(problem_, gap_.measure(dual_step_.samples(), gradient_, bounded_dual(), info.objective), info);
+    judge_by_gap(problem_, gap_, gap_.measure(dual_step_.samples(), gradient_, bounded_dual(), info.objective),
+                 still_step, info);
   }
 
   /// In its picture's order. Relaxation may have carried it beyond its bounds.

@@ -91,7 +91,8 @@ TEST_CASE("adm with epsilon: the bound holds and the l1 norm is the least, for r
         const SolvedFrame frame = solve_frame(*solver, to_float(b.y), to_float(b.weights));
         const std::vector<double> x(frame.x.begin(), frame.x.end());
         ++compared;
-        CHECK(frame.info.health == recon::Health::converged);
+        const bool proven = frame.info.duality_gap <= 1e-3 * frame.info.objective;  // negative with a box: has none
+        CHECK((frame.info.health == recon::Health::converged) == proven);
         CHECK(residual_of(problem, b, x) <= b.epsilon * (1.0 + 1e-3));
         CHECK(magnitudes(problem, basis, x) == doctest::Approx(b.least).epsilon(1e-3));
         CHECK(frame.info.objective == doctest::Approx(magnitudes(problem, basis, x)).epsilon(1e-5));

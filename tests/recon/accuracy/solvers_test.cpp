@@ -88,10 +88,9 @@ bool check_against(const recon::reference::ReferenceResult& best, const SolverPr
   CHECK(frame.info.iterations == iterations);
   // Weak duality: the gap never promises more than is true.
   CHECK(frame.info.duality_gap >= reached - best.objective - 2e-6 * best.objective - 1e-7);
-  const bool first_order = kind == solver_named("fista") || kind == solver_named("cp") || kind == solver_named("pdhg");
   const bool close = reached <= best.objective * (1.0 + 1e-4) + 1e-7;
   const bool settled = frame.info.health == recon::Health::converged;
-  CHECK((settled || first_order));
+  CHECK(settled == (frame.info.duality_gap <= 1e-3 * frame.info.objective));
   // A gap of 1e-3 is what counts as settled; total variation by pdhg can be that far off.
   const bool near = reached <= best.objective * (1.0 + 1e-3) + 1e-7;
   CHECK((near || !settled));
