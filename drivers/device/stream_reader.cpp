@@ -67,7 +67,8 @@ class PacketReader final : public StreamReader {
 };
 
 /// Frames out of input reports, one a chunk. Reports carry no time, so the device is asked for it: at the first report
-/// of a stream, and again after a frame without TIME_OK, an incomplete one, or a gap, in which one may have been.
+/// of a stream, and again after a frame whose time is doubtful: without TIME_OK, or behind a gap, in which one may have
+/// been.
 class ReportReader final : public StreamReader {
  public:
   explicit ReportReader(const protocol::DeviceDescriptor& descriptor)
@@ -76,7 +77,6 @@ class ReportReader final : public StreamReader {
   void begin_run() noexcept override { reports_.begin_run(); }
   void begin_stream(std::uint32_t config_id, std::int64_t period_ns) noexcept override {
     reports_.begin_stream(config_id, period_ns);
-    next_frame_ = reports_.account().produced;
     needs_time_ = true;
   }
   [[nodiscard]] std::uint64_t most_ahead() const noexcept override { return std::uint64_t{1} << 15U; }
@@ -86,11 +86,7 @@ class ReportReader final : public StreamReader {
   }
   [[nodiscard]] std::optional<hal::SampleBlock> take() noexcept override {
     const auto block = reports_.take();
-    if (!block) return block;
-    const std::uint64_t incomplete = reports_.counters().incomplete_frames;
-    const bool whole = std::exchange(incomplete_, incomplete) == incomplete;
-    const bool follows = std::exchange(next_frame_, block->frame + 1) == block->frame;
-    needs_time_ = needs_time_ || !block->flags.time_ok || !whole || !follows;
+    needs_time_ = needs_time_ || (block && !block->flags.time_ok);
     return block;
   }
   void stop(hal::DropReason reason) noexcept override { reports_.stop(reason); }
@@ -119,8 +115,6 @@ class ReportReader final : public StreamReader {
  private:
   protocol::HidAssembler reports_;
   bool needs_time_ = true;
-  std::uint64_t next_frame_ = 0;
-  std::uint64_t incomplete_ = 0;
 };
 
 }  // namespace
