@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -110,14 +111,16 @@ hal::Result<void> UartTransport::wait_for(short events, std::int64_t deadline_ns
   return {};
 }
 
-hal::Result<void> UartTransport::send(std::span<const std::byte> frame, std::int64_t deadline_ns) {
+hal::Result<void> UartTransport::send_frame(std::span<const std::byte> frame, std::int64_t deadline_ns) {
   std::vector<std::byte> encoded(protocol::cobs_bytes(frame.size()) + 1);
   const std::size_t length = protocol::cobs_encode(frame, encoded);
   encoded.resize(length + 1);
   encoded[length] = std::byte{0};
   for (std::span<const std::byte> rest = encoded; !rest.empty();) {
     TRY(wait_for(POLLOUT, deadline_ns));
-    const ssize_t put = ::write(file_, rest.data(), rest.size());
+    // A socket whose other end is gone would end the process with a signal.
+    ssize_t put = ::send(file_, rest.data(), rest.size(), MSG_NOSIGNAL);
+    if (put < 0 && errno == ENOTSOCK) put = ::write(file_, rest.data(), rest.size());
     if (put < 0 && errno != EAGAIN && errno != EINTR) return tl::unexpected(failure(errno, "written to"));
     rest = rest.subspan(static_cast<std::size_t>(std::max<ssize_t>(put, 0)));
   }
@@ -160,7 +163,7 @@ hal::Result<std::size_t> UartTransport::control(std::uint8_t request, std::span<
   const std::uint32_t crc = protocol::crc32c(frame);
   frame.resize(frame.size() + protocol::packet_crc_bytes);
   protocol::store_little(frame.data() + frame.size() - protocol::packet_crc_bytes, crc);
-  TRY(send(frame, deadline_ns));
+  TRY(send_frame(frame, deadline_ns));
   for (;; reply_.clear()) {
     while (reply_.empty()) TRY(take_more(deadline_ns));
     // Half a reply, or one to a request that was given up: the right one may still come.

@@ -11,7 +11,7 @@
 
 namespace compueye::transport {
 
-/// An eye on a UART, or on whatever has its file: a pseudo-terminal, a socket, a pair of pipes opened as one. Packets,
+/// An eye on a UART, or on whatever has its file: a pseudo-terminal or a socket. Packets,
 /// requests and replies are COBS frames (docs/protocol.md, "UART"); packets that come while a reply is waited for are
 /// kept for read(), up to a megabyte. One thread: there is one stream for both.
 class UartTransport final : public hal::ByteTransport {
@@ -35,7 +35,7 @@ class UartTransport final : public hal::ByteTransport {
 
  private:
   [[nodiscard]] hal::Result<void> set_up_terminal() const;
-  [[nodiscard]] hal::Result<void> send(std::span<const std::byte> frame, std::int64_t deadline_ns);
+  [[nodiscard]] hal::Result<void> send_frame(std::span<const std::byte> frame, std::int64_t deadline_ns);
   [[nodiscard]] hal::Result<void> wait_for(short events, std::int64_t deadline_ns) const;
   /// Reads once and sorts what has come: packets, and replies to `reply_`.
   [[nodiscard]] hal::Result<void> take_more(std::int64_t deadline_ns);

@@ -83,7 +83,7 @@ class Firmware {
     if (taken && room > 0) {
       reply.insert(reply.end(), data.begin(), data.begin() + static_cast<std::ptrdiff_t>(done.bytes));
     }
-    if (noisy_) send({std::byte{0x11}, std::byte{0}, std::byte{0x22}});
+    if (noisy_) send({std::byte{0x11}, std::byte{0}, std::byte{0x22}, std::byte{0}});
     send_frame(reply, true);
   }
 
