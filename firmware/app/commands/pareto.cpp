@@ -34,16 +34,17 @@ Result<void> try_folder(const std::string& folder) {
   return try_output(folder + "/pareto.csv");
 }
 
-/// A sweep that was cut short does not push a whole one of the same eye, machine and build aside.
+/// A sweep that was cut short does not push a whole one of the same eye, machine and build aside, nor one of a busy
+/// machine one of an idle.
 void store(const Board& board, Sweep& sweep) {
   const std::string folder = board.cache();
   const PointsKey key{sweep.response_hash, sweep.machine, sweep.constraint, sweep.lo, sweep.hi};
-  if (!sweep.cut_short.empty()) {
-    const auto before = load_points(folder, key);
-    if (before && before->cut_short.empty()) {
-      sweep.notes.emplace_back("the points stored before are complete and stay; these are printed and written only");
-      return;
-    }
+  const bool trusted = sweep.processor_share >= trusted_processor_share;
+  const auto before = load_points(folder, key);
+  if (before && (!trusted || (!sweep.cut_short.empty() && before->cut_short.empty()))) {
+    sweep.notes.push_back(fmt::format("the points stored before are {} and stay; these are printed and written only",
+                                      trusted ? "complete" : "of an idle machine"));
+    return;
   }
   if (auto stored = store_points(folder, sweep); !stored) {
     sweep.notes.push_back("the points cannot be stored, so run --deadline will not know them: " +

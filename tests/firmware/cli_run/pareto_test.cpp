@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "firmware/files/png.hpp"
+#include "firmware/operating_points/measured_points.hpp"
 #include "tests/firmware/cli_run/pareto_command.hpp"
 #include "tests/firmware/cli_run/refused.hpp"
 
@@ -160,8 +161,11 @@ TEST_CASE("a budget ends the sweep, and a partial sweep leaves a whole one in it
   CHECK(contains(partial["cut_short"].get<std::string>(), "budget"));
   CHECK(has_note(partial, "stay"));
   CHECK(bytes_of(board.cache() / "accuracy-and-time.json") == whole);
-  static_cast<void>(pareto_json(board, short_sweep({"--noise", "2"})));
-  CHECK(bytes_of(board.cache() / "accuracy-and-time.json") != whole);
+  // Nor does one of a busy machine, as that of a test may be.
+  const Json other = pareto_json(board, short_sweep({"--noise", "2"}));
+  const bool trusted = other["processor_share"].get<double>() >= firmware::trusted_processor_share;
+  CHECK((bytes_of(board.cache() / "accuracy-and-time.json") != whole) == trusted);
+  CHECK(has_note(other, "stay") == !trusted);
 }
 
 TEST_CASE("pareto refuses what makes no sense before it works") {
