@@ -43,6 +43,14 @@ ExpectedOutcome parse_row(const std::string& line) {
   return row;
 }
 
+std::uint64_t count_of(const std::vector<hal::Counter>& failures, const std::string& counter) {
+  for (const hal::Counter& each : failures) {
+    if (each.name == counter) return each.count;
+  }
+  FAIL("docs/faults.md names a counter that is not there: " << counter);
+  return 0;
+}
+
 }  // namespace
 
 std::vector<ExpectedOutcome> read_fault_table(const std::string& path) {
@@ -66,6 +74,26 @@ std::vector<ExpectedOutcome> read_fault_table(const std::string& path) {
     }
   }
   return rows;
+}
+
+void check_drops(const hal::FrameAccount& account, const ExpectedOutcome& expected) {
+  for (std::size_t k = 0; k < hal::drop_reason_count; ++k) {
+    const std::string reason(hal::name(static_cast<hal::DropReason>(k)));
+    const bool allowed =
+        reason == "stopped" || std::find(expected.drops.begin(), expected.drops.end(), reason) != expected.drops.end();
+    CAPTURE(reason);
+    CHECK((allowed || account.dropped[k] == 0));
+  }
+}
+
+void check_counters(const std::vector<hal::Counter>& failures, const ExpectedOutcome& expected) {
+  for (const auto& one_of : expected.counters) {
+    std::uint64_t moved = 0;
+    for (const std::string& counter : one_of) moved += count_of(failures, counter);
+    CAPTURE(one_of.front());
+    CHECK(moved > 0);
+  }
+  if (expected.counters.empty()) CHECK(hal::text_of(failures).empty());
 }
 
 }  // namespace compueye::hil

@@ -5,6 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "hal/accounting.hpp"
+#include "hal/counter.hpp"
+
 /// docs/faults.md as the ladder reads it: what is expected is written there and nowhere else.
 namespace compueye::hil {
 
@@ -20,5 +23,10 @@ struct ExpectedOutcome {
 
 /// Reads the table below the heading "The table"; a row that does not parse is a failed test.
 [[nodiscard]] std::vector<ExpectedOutcome> read_fault_table(const std::string& path);
+
+/// Frames are missing for reasons of the row alone, beside `stopped`.
+void check_drops(const hal::FrameAccount& account, const ExpectedOutcome& expected);
+/// Each counter that the row names has moved; where it names none, none has.
+void check_counters(const std::vector<hal::Counter>& failures, const ExpectedOutcome& expected);
 
 }  // namespace compueye::hil

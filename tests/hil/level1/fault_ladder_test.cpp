@@ -135,31 +135,7 @@ void check_account(EyeRig& rig, const ExpectedOutcome& expected) {
   CHECK(account.balanced());
   CHECK(account.produced == rig.shown.made());
   CHECK(account.delivered == rig.delivered());
-  for (std::size_t k = 0; k < hal::drop_reason_count; ++k) {
-    const std::string reason(hal::name(static_cast<hal::DropReason>(k)));
-    const bool allowed =
-        reason == "stopped" || std::find(expected.drops.begin(), expected.drops.end(), reason) != expected.drops.end();
-    CAPTURE(reason);
-    CHECK((allowed || account.dropped[k] == 0));
-  }
-}
-
-std::uint64_t count_of(const std::vector<hal::Counter>& failures, const std::string& counter) {
-  for (const hal::Counter& each : failures) {
-    if (each.name == counter) return each.count;
-  }
-  FAIL("docs/faults.md names a counter that is not there: " << counter);
-  return 0;
-}
-
-void check_counters(const std::vector<hal::Counter>& failures, const ExpectedOutcome& expected) {
-  for (const auto& one_of : expected.counters) {
-    std::uint64_t moved = 0;
-    for (const std::string& counter : one_of) moved += count_of(failures, counter);
-    CAPTURE(one_of.front());
-    CHECK(moved > 0);
-  }
-  if (expected.counters.empty()) CHECK(hal::text_of(failures).empty());
+  check_drops(account, expected);
 }
 
 /// All seeds of one row; the longest that it took.

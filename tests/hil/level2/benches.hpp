@@ -52,6 +52,28 @@ inline bool whole(const hal::SampleBlock& block) {
 /// machine.
 inline constexpr std::int64_t patience_ns = 60'000'000'000;
 
+/// A transport that gives every request the time that a busy machine needs for it.
+template <class Transport>
+class Unhurried final : public hal::ByteTransport {
+ public:
+  [[nodiscard]] const hal::TransportDescription& describe() const noexcept override { return inner_.describe(); }
+  hal::Result<void> open() override { return inner_.open(); }
+  void close() noexcept override { inner_.close(); }
+  hal::Result<std::size_t> read(std::span<std::byte> into, std::int64_t deadline_ns) override {
+    return inner_.read(into, deadline_ns);
+  }
+  hal::Result<void> write(std::span<const std::byte> from, std::int64_t deadline_ns) override {
+    return inner_.write(from, deadline_ns);
+  }
+  hal::Result<std::size_t> control(std::uint8_t request, std::span<const std::byte> payload, std::span<std::byte> reply,
+                                   std::int64_t) override {
+    return inner_.control(request, payload, reply, hal::MonotonicClock().now_ns() + patience_ns);
+  }
+
+ private:
+  Transport inner_;
+};
+
 /// Until an eye just plugged in answers.
 template <class Port>
 void wait_for_boot(Port& port) {

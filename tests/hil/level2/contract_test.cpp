@@ -20,28 +20,6 @@ protocol::EmulatorSettings two_part_eye(const protocol::Bus* bus) {
   return settings;
 }
 
-/// A transport that gives every request the time that a busy machine needs for it.
-template <class Transport>
-class Unhurried final : public hal::ByteTransport {
- public:
-  [[nodiscard]] const hal::TransportDescription& describe() const noexcept override { return inner_.describe(); }
-  hal::Result<void> open() override { return inner_.open(); }
-  void close() noexcept override { inner_.close(); }
-  hal::Result<std::size_t> read(std::span<std::byte> into, std::int64_t deadline_ns) override {
-    return inner_.read(into, deadline_ns);
-  }
-  hal::Result<void> write(std::span<const std::byte> from, std::int64_t deadline_ns) override {
-    return inner_.write(from, deadline_ns);
-  }
-  hal::Result<std::size_t> control(std::uint8_t request, std::span<const std::byte> payload, std::span<std::byte> reply,
-                                   std::int64_t) override {
-    return inner_.control(request, payload, reply, hal::MonotonicClock().now_ns() + patience_ns);
-  }
-
- private:
-  Transport inner_;
-};
-
 template <class Port, class Transport>
 void check_contract(const protocol::Bus* bus) {
   HIL_TESTBED(testbed);
