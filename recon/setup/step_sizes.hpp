@@ -7,8 +7,8 @@
 
 namespace compueye::recon {
 
-/// A bound of ||A||_2^2 for gradient steps: the power method on A'A from a positive start until it moves by less than
-/// 1e-6, plus 1 %. 0 for an all-zero A.
+/// A bound of ||A||_2^2 for gradient steps: the power method on A'A from a positive start and from a random one,
+/// each until it moves by less than 1e-6, the larger plus 1 %. 0 for an all-zero A.
 [[nodiscard]] double squared_norm_bound(const Response& response);
 
 /// Steps of the primal-dual method: primal_j = 1 / (b (sum_i |a_ij| + k)) and dual_i = b / sum_j |a_ij| for A, and

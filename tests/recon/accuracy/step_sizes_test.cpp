@@ -31,6 +31,32 @@ TEST_CASE("the gradient step's bound lies just above the squared norm") {
   }
 }
 
+TEST_CASE("the gradient step's bound holds where the leading vector is orthogonal to every likely start") {
+  Random random(103);
+  constexpr Eigen::Index rows = 12, cols = 20;
+  Eigen::VectorXd ripple(cols);
+  for (Eigen::Index k = 0; k < cols; ++k) ripple[k] = 1.0 + 0.1 * std::sin(0.7 * static_cast<double>(k));
+  for (const Eigen::VectorXd& start : {ripple, Eigen::VectorXd(Eigen::VectorXd::Ones(cols))}) {
+    Eigen::VectorXd leading(cols);
+    for (double& v : leading) v = random.normal();
+    leading -= leading.dot(start) / start.squaredNorm() * start;
+    Eigen::MatrixXd matrix(rows, cols);
+    for (Eigen::Index k = 0; k < matrix.size(); ++k) matrix.data()[k] = 0.1 * random.normal();
+    // The other rows see nothing of it, and the start none of the first.
+    matrix -= matrix * leading * leading.transpose() / leading.squaredNorm();
+    matrix.row(0) = 12.0 * leading.transpose() / leading.norm();
+    matrix.row(1) += 6.0 * start.transpose() / start.norm();
+    std::vector<double> values;
+    for (Eigen::Index m = 0; m < rows; ++m) {
+      for (Eigen::Index n = 0; n < cols; ++n) values.push_back(matrix(m, n));
+    }
+    const double exact = norm(matrix) * norm(matrix);
+    const double bound = recon::squared_norm_bound(recon::Response::from_dense(rows, cols, values).value());
+    CHECK(bound >= exact);
+    CHECK(bound <= 1.02 * exact);
+  }
+}
+
 TEST_CASE("primal-dual steps keep the preconditioned operator's norm at one or below") {
   Random random(102);
   for (const double unit : {1e-3, 1.0, 1e4}) {
