@@ -239,7 +239,8 @@ std::function<void()> BoardRun::how_far() {
   const LiveStatus& status = keeper_->status();
   if (::isatty(STDERR_FILENO) == 1 && terminal_can_draw()) {
     return [this, &status, progress = session_.progress()] {
-      progress("frames", static_cast<double>(status.delivered()), static_cast<double>(frames()));
+      progress(source_->source().recovering() ? "frames, getting the eye back" : "frames",
+               static_cast<double>(status.delivered()), static_cast<double>(frames()));
     };
   }
   return [this, &status, line = StatusLine(status), due_ns = session_.clock().now_ns() + every_ns]() mutable {
@@ -248,7 +249,8 @@ std::function<void()> BoardRun::how_far() {
     const std::string_view text = line.print(now_ns, room);
     if (now_ns < due_ns) return;
     due_ns = now_ns + every_ns;
-    session_.say(fmt::format("{} frames, {}", status.delivered(), text));
+    session_.say(fmt::format("{} frames, {}{}", status.delivered(), text,
+                             source_->source().recovering() ? "; getting the eye back" : ""));
   };
 }
 
