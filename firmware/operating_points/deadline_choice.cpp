@@ -87,13 +87,15 @@ hal::Result<SolveTime> measure_solve_time(const TimedSolve& solve_ns, int most_i
 
 DeadlineChoice choose_iterations(double deadline_ms, double period_ms, const SolveTime& time, int most_iterations) {
   const auto solve_ms = [&](int iterations) { return time.of(iterations) / ns_per_ms; };
-  const auto fits = [&](int iterations) {
-    return solve_ms(iterations) <= period_ms &&
-           predicted_age_ms(solve_ms(iterations), period_ms) <= deadline_share * deadline_ms;
+  const auto within = [&](int iterations, double age_ms) {
+    return solve_ms(iterations) <= period_ms && predicted_age_ms(solve_ms(iterations), period_ms) <= age_ms;
   };
+  const auto fits = [&](int iterations) { return within(iterations, deadline_share * deadline_ms); };
   const int least = std::min(least_iterations, most_iterations);
+  const double allowed_ms =
+      fits(least) ? deadline_share * deadline_ms : nearly_as_fast * predicted_age_ms(solve_ms(least), period_ms);
   int iterations = most_iterations;
-  while (iterations > least && !fits(iterations)) --iterations;
+  while (iterations > least && !within(iterations, allowed_ms)) --iterations;
   DeadlineChoice choice;
   choice.deadline_ms = deadline_ms;
   choice.most_iterations = most_iterations;
@@ -112,8 +114,9 @@ std::string DeadlineChoice::sentence() const {
   if (!fits) {
     return fmt::format(
         "the deadline of {} cannot be kept at this frame rate: with {} iterations a picture is already about {} old "
-        "(exposure and {} of solving); running with them all the same, since fewer can be worse than the conventional "
-        "eye, so expect poor and late pictures; {} is the shortest deadline this machine can promise for this board, "
+        "(exposure and {} of solving); running with them all the same, since fewer would hardly be quicker, and at "
+        "worst no better than the conventional "
+        "eye, so expect late pictures; {} is the shortest deadline this machine can promise for this board, "
         "{} "
         "the shortest for all {} iterations",
         ms(deadline_ms), iterations, ms(age_ms), ms(solve_ms), ms(least_ms), ms(for_most_ms), most_iterations);

@@ -40,6 +40,10 @@ struct DeadlineChoice {
 /// Share of the deadline that the prediction may use up: the rest is for the sink and for a machine that is busy.
 inline constexpr double deadline_share = 0.8;
 
+/// Where nothing meets the deadline, accuracy chooses among pictures that are at most so many times as old as those of
+/// the fastest.
+inline constexpr double nearly_as_fast = 1.25;
+
 /// With fewer iterations a picture can be worse than the conventional eye's (at two an 80x80 eye has 0.8 times its
 /// NMSE, at one 1.6 times), so no deadline is short enough to ask for them.
 inline constexpr int least_iterations = 3;
@@ -49,7 +53,8 @@ inline constexpr int least_iterations = 3;
 [[nodiscard]] double predicted_age_ms(double solve_ms, double period_ms) noexcept;
 
 /// The largest number of iterations whose predicted age stays within deadline_share of the deadline and that takes no
-/// longer than a frame period, but no fewer than least_iterations (or all, where those are fewer).
+/// longer than a frame period, but no fewer than least_iterations (or all, where those are fewer). Where those are too
+/// many already, as many as make pictures hardly older.
 [[nodiscard]] DeadlineChoice choose_iterations(double deadline_ms, double period_ms, const SolveTime& time,
                                                int most_iterations);
 

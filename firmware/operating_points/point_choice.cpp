@@ -53,7 +53,7 @@ std::vector<std::size_t> worth_a_picture(const Sweep& sweep, std::size_t level) 
   std::vector<std::size_t> front = efficient_points(sweep, level, &MeasuredPoint::p999_ms);
   if (front.empty()) front.push_back(0);  // nothing but still scenes was measured
   if (level >= sweep.conventional.size()) return front;
-  const double worst = sweep.conventional[level].mean.nmse;
+  const double worst = worth_share * sweep.conventional[level].mean.nmse;
   std::erase_if(front, [&](std::size_t i) { return !(nmse_of(sweep.points[i], level) < worst); });
   return front;
 }
@@ -71,11 +71,13 @@ PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, 
   std::erase_if(front, [&](std::size_t i) { return sweep.points[i].median_ms > period_ms; });
   choice.keeps_up = !front.empty();
   if (front.empty()) front.push_back(fastest);
+  const double least_age_ms = predicted_age_ms(cost(front.front()), period_ms);
   std::size_t chosen = 0;
   for (std::size_t f = 0; f < front.size(); ++f) {
-    const bool fits = predicted_age_ms(cost(front[f]), period_ms) <= deadline_share * deadline_ms;
+    const double age_ms = predicted_age_ms(cost(front[f]), period_ms);
+    const bool fits = age_ms <= deadline_share * deadline_ms;
     choice.fits = choice.fits || (fits && choice.keeps_up);
-    if (fits || (!choice.fits && cost(front[f]) <= nearly_as_fast * cost(front.front()))) chosen = f;
+    if (fits || (!choice.fits && age_ms <= nearly_as_fast * least_age_ms)) chosen = f;
   }
   choice.ladder.push_back(front[chosen]);
   choice.age_ms = predicted_age_ms(cost(front[chosen]), period_ms);
@@ -100,7 +102,7 @@ std::string point_text(const MeasuredPoint& point) {
 
 std::string sentence(const PointChoice& choice, const Sweep& sweep) {
   if (choice.ladder.empty()) {
-    return fmt::format("none of the {} stored points is better than the conventional eye", sweep.points.size());
+    return fmt::format("none of the {} stored points is clearly better than the conventional eye", sweep.points.size());
   }
   const auto ms = [](double value) { return significant(value, 3) + " ms"; };
   const MeasuredPoint& chosen = sweep.points[choice.ladder.front()];

@@ -22,15 +22,15 @@ struct PointChoice {
 };
 
 inline constexpr std::size_t most_rungs = 4;
-inline constexpr double nearly_as_fast = 1.5;  ///< where nothing fits, accuracy chooses among points this near
-inline constexpr double rung_speed_up = 1.5;   ///< each rung's 99.9th percentile is at least so many times shorter
+inline constexpr double worth_share = 0.75;   ///< of the conventional eye's NMSE: a mean hides scenes it is better at
+inline constexpr double rung_speed_up = 1.5;  ///< each rung's 99.9th percentile is at least so many times shorter
 inline constexpr std::uint64_t most_ladder_bytes = std::uint64_t{512} << 20U;  ///< beyond the chosen point
 
 /// The most accurate stored point (mean NMSE at the noise level nearest to `sigma`) whose 99.9th percentile of frame
 /// time keeps the predicted age within deadline_share of the deadline, and what to step down to. The age is that of
-/// choose_iterations(). A warm start counts with what it made of a scene in which something moves. Points that are no
-/// better than the conventional eye, or whose median is longer than a frame period, are not chosen. When nothing fits,
-/// the most accurate of those nearly as fast as the fastest. `sweep` has points.
+/// choose_iterations(). A warm start counts with what it made of a scene in which something moves. Points with more
+/// than worth_share of the conventional eye's NMSE, or whose median is longer than a frame period, are not chosen. When
+/// nothing fits, the most accurate of those whose pictures are nearly as young as the fastest's. `sweep` has points.
 [[nodiscard]] PointChoice choose_points(const Sweep& sweep, double sigma, double deadline_ms, double period_ms);
 
 /// Says which point was chosen and why.

