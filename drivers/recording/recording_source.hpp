@@ -58,6 +58,7 @@ class RecordingSource final : public hal::SampleSource {
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
   /// True as soon as nothing more can be written.
   [[nodiscard]] bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
+  [[nodiscard]] bool stops_on_failure() const noexcept { return settings_.stop_on_failure; }
   /// The first thing that went wrong with the file. After stop(), or once failed().
   [[nodiscard]] const std::optional<hal::Error>& error() const noexcept { return error_; }
 

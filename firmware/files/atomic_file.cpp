@@ -95,32 +95,6 @@ hal::Result<void> AtomicFile::write(std::string_view text) {
   return write(std::as_bytes(std::span(text.data(), text.size())));
 }
 
-hal::Result<void> AtomicFile::overwrite(std::uint64_t offset, std::span<const std::byte> bytes) {
-  if (!replaces_) {
-    return hal::fail(hal::ErrorCode::unsupported, target_,
-                     "is a device or a pipe, expected a file, because its beginning is written last");
-  }
-  while (!bytes.empty()) {
-    const ssize_t put = ::pwrite(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) return tl::unexpected(file_error(errno, target_, cannot_write));
-    bytes = bytes.subspan(static_cast<std::size_t>(put));
-    offset += static_cast<std::uint64_t>(put);
-  }
-  return {};
-}
-
-hal::Result<void> AtomicFile::truncate(std::uint64_t size) {
-  if (!replaces_) {
-    return hal::fail(hal::ErrorCode::unsupported, target_, "is a device or a pipe, expected a file");
-  }
-  if (::ftruncate(file_.get(), static_cast<off_t>(size)) != 0 ||
-      ::lseek(file_.get(), static_cast<off_t>(size), SEEK_SET) < 0) {
-    return tl::unexpected(file_error(errno, target_, cannot_write));
-  }
-  return {};
-}
-
 hal::Result<void> AtomicFile::commit() {
   if (!file_.is_open()) return hal::fail(hal::ErrorCode::usage, target_, "was already finished or given up");
   int error_number = 0;

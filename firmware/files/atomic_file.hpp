@@ -35,12 +35,6 @@ class AtomicFile {
   [[nodiscard]] hal::Result<void> write(std::span<const std::byte> bytes);
   [[nodiscard]] hal::Result<void> write(std::string_view text);
 
-  /// Overwrites bytes already written, leaving the end where it is. Error unsupported on a device or pipe.
-  [[nodiscard]] hal::Result<void> overwrite(std::uint64_t offset, std::span<const std::byte> bytes);
-
-  /// Gives up everything behind `size` bytes. Error unsupported on a device or pipe.
-  [[nodiscard]] hal::Result<void> truncate(std::uint64_t size);
-
   /// Makes the file appear; afterwards nothing more may be written. On failure the partial file is removed.
   [[nodiscard]] hal::Result<void> commit();
 

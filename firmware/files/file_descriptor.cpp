@@ -41,6 +41,8 @@ Advice advice_for(int error_number) {
     case EFBIG:
       return {ErrorCode::no_space, "it would exceed the largest allowed file size",
               "raise the limit (ulimit -f) or write less"};
+    case EEXIST:
+      return {ErrorCode::io, "there is one already, which is never overwritten", "choose another name or remove it"};
     case ENXIO:
       return {ErrorCode::io, "nobody reads this pipe", "start its reader first"};
     case ELOOP:

@@ -1,8 +1,14 @@
 #include "firmware/sinks/npy_sink.hpp"
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 #include <filesystem>
 #include <span>
 
+#include "firmware/files/atomic_file.hpp"
 #include "firmware/files/npy_header.hpp"
 #include "hal/try.hpp"
 
@@ -10,12 +16,6 @@ namespace compueye::firmware {
 
 NpySink::~NpySink() {
   static_cast<void>(NpySink::close());
-}
-
-// Wide enough for any number of frames, so that it can be written again in place.
-std::string NpySink::header() const {
-  const std::int64_t shape[] = {frames_, format_.rows, format_.cols};
-  return format_npy_header("<f4", shape, 128);
 }
 
 std::size_t NpySink::pixels() const noexcept {
@@ -30,14 +30,16 @@ hal::Result<void> NpySink::open(hal::FrameFormat format) {
                      "was to hold pictures of " + std::to_string(format.rows) + " x " + std::to_string(format.cols) +
                          " pixels, expected at least 1 x 1");
   }
-  AtomicFile file = TRY(AtomicFile::create(path_));
+  if (made_) ::unlink(path_.c_str());
+  GrowingFile file = TRY(GrowingFile::create(path_));
+  made_ = true;
   format_ = format;
   frames_ = 0;
-  torn_ = false;
-  const std::string top = header();
-  TRY(file.write(top));
-  // A device or pipe would only fail at close(), after all the work.
-  TRY(file.overwrite(0, std::as_bytes(std::span(top))));
+  // Wide enough for any number of frames, so that it can be written again in place.
+  const std::int64_t shape[] = {frames_, format_.rows, format_.cols};
+  header_ = format_npy_header("<f4", shape, 128);
+  shape_at_ = header_.find('(') + 1;
+  TRY(file.append(std::as_bytes(std::span(header_))));
   file_.emplace(std::move(file));
   return {};
 }
@@ -49,23 +51,21 @@ hal::Result<void> NpySink::write(const hal::Frame& frame) {
                      "was given a picture of " + std::to_string(frame.pixels.size()) + " pixels, expected " +
                          std::to_string(pixels()));
   }
-  if (torn_) {
-    return hal::fail(hal::ErrorCode::io, path_, "already failed to take a picture; close it to keep the rest");
-  }
-  auto ok = file_->write(std::as_bytes(frame.pixels));
-  torn_ = !ok;
-  if (ok) ++frames_;
-  return ok;
+  TRY(file_->append(std::as_bytes(frame.pixels)));
+  ++frames_;
+  // After the picture: a header that tells of less than there is can be read.
+  const std::span<char> shape = std::span(header_).subspan(shape_at_, header_.size() - 1 - shape_at_);
+  const int used =
+      std::snprintf(shape.data(), shape.size(), "%" PRId64 ", %d, %d), }", frames_, format_.rows, format_.cols);
+  std::fill(shape.begin() + used, shape.end(), ' ');
+  return file_->overwrite(shape_at_, std::as_bytes(shape));
 }
 
 hal::Result<void> NpySink::close() {
   if (!file_) return {};
-  AtomicFile file = std::move(*file_);
+  GrowingFile file = std::move(*file_);
   file_.reset();
-  const std::string top = header();
-  if (torn_) TRY(file.truncate(top.size() + static_cast<std::uint64_t>(frames_) * pixels() * sizeof(float)));
-  TRY(file.overwrite(0, std::as_bytes(std::span(top))));
-  return file.commit();
+  return file.close();
 }
 
 }  // namespace compueye::firmware

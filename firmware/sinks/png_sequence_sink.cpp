@@ -22,9 +22,17 @@ void print_name(std::string& into, const std::string& folder, std::uint64_t fram
   std::snprintf(into.data(), into.size(), "%s/frame-%06" PRIu64 "%s", folder.c_str(), frame, end);
 }
 
+/// Never what is there already: a link that was planted would lead the picture elsewhere.
+FileDescriptor open_partial(const char* partial) noexcept {
+  constexpr int how = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+  const int fd = ::open(partial, how, 0666);
+  if (fd >= 0 || errno != EEXIST || ::unlink(partial) != 0) return FileDescriptor(fd);
+  return FileDescriptor(::open(partial, how, 0666));
+}
+
 // 0 or an errno; leaves nothing behind on failure.
 int write_and_rename(const char* partial, const char* name, std::span<const std::byte> bytes) noexcept {
-  FileDescriptor file(::open(partial, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  FileDescriptor file = open_partial(partial);
   if (!file.is_open()) return errno;
   int error_number = write_all(file.get(), bytes);
   const int close_error = file.close();
@@ -59,7 +67,7 @@ hal::Result<void> PngSequenceSink::open(hal::FrameFormat format) {
 hal::Result<void> PngSequenceSink::try_folder() {
   TRY(make_folder(folder_));
   print_name(partial_, folder_, 0, ".png.partial");
-  FileDescriptor probe(::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
+  const FileDescriptor probe = open_partial(partial_.c_str());
   if (!probe.is_open()) return tl::unexpected(file_error(errno, folder_, "cannot take pictures"));
   ::unlink(partial_.c_str());
   return {};

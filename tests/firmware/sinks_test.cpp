@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <set>
 #include <string>
@@ -9,13 +10,16 @@
 
 #include "firmware/files/npy.hpp"
 #include "firmware/files/png.hpp"
+#include "firmware/sinks/frame_list_sink.hpp"
 #include "firmware/sinks/npy_sink.hpp"
+#include "firmware/sinks/picture_folder.hpp"
 #include "firmware/sinks/png_sequence_sink.hpp"
 #include "firmware/sinks/sink_list.hpp"
 #include "firmware/sinks/terminal_sink.hpp"
 #include "hal/clock.hpp"
 #include "tests/firmware/sinks_terminal.hpp"
 #include "tests/firmware/temporary_folder.hpp"
+#include "tests/hal/error_check.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
 using namespace compueye;
@@ -191,12 +195,14 @@ TEST_CASE("no sink allocates while frames flow") {
   const Pipe pipe;
   hal::VirtualClock clock;
   NpySink npy(folder / "x.npy");
+  FrameListSink list(folder / "x.csv");
   PngSequenceSink png8(folder / "png8"), png16(folder / "png16", 16);
   TerminalSink terminal(clock, small_terminal(pipe));
   const std::vector<float> pixels(160 * 160, 0.3F);
   const FrameFormat format{160, 160};
-  for (hal::FrameSink* sink : {static_cast<hal::FrameSink*>(&npy), static_cast<hal::FrameSink*>(&png8),
-                               static_cast<hal::FrameSink*>(&png16), static_cast<hal::FrameSink*>(&terminal)}) {
+  for (hal::FrameSink* sink :
+       {static_cast<hal::FrameSink*>(&npy), static_cast<hal::FrameSink*>(&list), static_cast<hal::FrameSink*>(&png8),
+        static_cast<hal::FrameSink*>(&png16), static_cast<hal::FrameSink*>(&terminal)}) {
     REQUIRE(sink->open(format).has_value());
     const tests::HeapUse before = tests::heap_use_of_this_thread();
     bool ok = true;
@@ -209,4 +215,78 @@ TEST_CASE("no sink allocates while frames flow") {
     CHECK(ok);
     CHECK(sink->close().has_value());
   }
+}
+
+TEST_CASE("a series of pictures is a whole file after every frame, and so survives kill -9") {
+  const TemporaryFolder folder;
+  NpySink sink(folder / "frames.npy");
+  REQUIRE(sink.open({2, 2}).has_value());
+  for (std::uint64_t f = 0; f < 12; ++f) {
+    REQUIRE(sink.write(frame_of(std::vector<float>(4, static_cast<float>(f)), {2, 2}, f)).has_value());
+    const auto back = read_pictures(folder / "frames.npy");
+    REQUIRE_MESSAGE(back.has_value(), back.error().text());
+    CHECK(back->frames == static_cast<std::int64_t>(f) + 1);
+    CHECK(back->values.back() == static_cast<double>(f));
+  }
+  CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("a series of pictures that is there already is never overwritten") {
+  const TemporaryFolder folder;
+  const auto there = folder.file("frames.npy", "old");
+  NpySink sink(there);
+  CHECK(sink.open({2, 2}).error().place == there.string());
+  std::filesystem::create_symlink("elsewhere", folder / "frames.csv");
+  CHECK(FrameListSink(folder / "frames.csv").open({2, 2}).error().code == ErrorCode::io);
+  CHECK(compueye::test::bytes_of(there) == "old");
+  CHECK(folder.entries() == 2);
+}
+
+TEST_CASE("the list of frames says which they are and when they were exposed, at any moment") {
+  const TemporaryFolder folder;
+  FrameListSink sink(folder / "made/frames.csv");
+  const std::vector<float> pixels{0.5F};
+  CHECK(sink.write({pixels, {1, 1}, 1, 1}).error().code == ErrorCode::usage);
+  for (int round = 0; round < 2; ++round) {
+    REQUIRE(sink.open({1, 1}).has_value());
+    REQUIRE(sink.write({pixels, {1, 1}, 0, -5}).has_value());
+    REQUIRE(sink.write({pixels, {1, 1}, 18446744073709551615ULL, 9223372036854775807}).has_value());
+    CHECK(compueye::test::bytes_of(folder / "made/frames.csv") ==
+          "frame,t_ns\n0,-5\n18446744073709551615,9223372036854775807\n");
+    CHECK(sink.close().has_value());
+  }
+}
+
+TEST_CASE("a folder of pictures belongs to one run: while it lasts, and after it") {
+  const TemporaryFolder folder;
+  const std::string pictures = folder / "pictures";
+  {
+    const auto mine = PictureFolder::claim(pictures);
+    REQUIRE(mine.has_value());
+    compueye::test::check_error(PictureFolder::claim(pictures), ErrorCode::io, pictures, {});
+  }
+  REQUIRE(PictureFolder::claim(pictures).has_value());
+  // What is not a run's is left alone, and what a killed run left half-written is removed.
+  std::ofstream(folder / "pictures/notes.txt") << "x";
+  std::ofstream(folder / "pictures/frame-000007.png.partial") << "x";
+  REQUIRE(PictureFolder::claim(pictures).has_value());
+  CHECK(std::distance(std::filesystem::directory_iterator(pictures), {}) == 1);
+  for (const char* name : {"frame-000003.png", "frames.npy", "frames.csv"}) {
+    std::ofstream(folder / "pictures" / name) << "x";
+    compueye::test::check_error(PictureFolder::claim(pictures), ErrorCode::io, pictures, {name});
+    std::filesystem::remove(folder / "pictures" / name);
+  }
+  compueye::test::check_error(PictureFolder::claim("/proc"), ErrorCode::not_found, "/proc/frames.csv", {});
+}
+
+TEST_CASE("a link planted under a picture's partial name leads no picture elsewhere") {
+  const TemporaryFolder folder;
+  const auto precious = folder.file("precious", "old");
+  PngSequenceSink sink(folder / "png");
+  REQUIRE(sink.open({1, 1}).has_value());
+  std::filesystem::create_symlink(precious, folder / "png/frame-000003.png.partial");
+  REQUIRE(sink.write(frame_of({0.5F}, {1, 1}, 3)).has_value());
+  CHECK(compueye::test::bytes_of(precious) == "old");
+  CHECK(read_png(folder / "png/frame-000003.png").has_value());
+  CHECK_FALSE(std::filesystem::is_symlink(folder / "png/frame-000003.png"));
 }

@@ -113,11 +113,13 @@ Figures report_of(const Board& board, const std::string& scene, const RecordingS
             {"wall_s", recorded.seconds},
             {"ending", recorded.ending},
             {"frames", figures_of(recorded.account)}};
-  return f.tell(
+  f.tell(
       "{file}: {frames_recorded} frames of {channels} channels of {board} in front of {scene}, {file_bytes:bytes} in "
       "{wall_s:duration}; {ending}\n"
       "[{frames.dropped:sum} frames were dropped before they reached the recorder\n]"
-      "[{frames_unrecorded} frames are not in the file, which did not keep up; it says so\n]");
+      "[{frames_unrecorded} frames are not in the file, which says so]");
+  if (source.unrecorded() == 0) return f;
+  return f.say(source.failed() ? "; it " + source.error()->sentence + "\n" : "; it did not keep up\n");
 }
 
 /// Records a board's eye until there are enough frames, the time is over, the user stops it or the file fails; what was

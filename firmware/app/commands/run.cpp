@@ -98,6 +98,7 @@ class BoardRun {
   const RunOptions& options_;
   Session& session_;
   Board board_;
+  std::optional<PictureFolder> folder_;
   sim::Scene scene_;
   hal::Image truth_;
   PointLadder ladder_;                     // its first eye is the board's, its rungs are empty without stored points
@@ -116,7 +117,7 @@ void BoardRun::note(const std::string& sentence) {
 Result<void> BoardRun::prepare() {
   board_ = TRY(load_board(options_.board));
   TRY(options_.overrides.apply(board_));
-  TRY(try_outputs(options_));
+  folder_ = TRY(claim_outputs(options_));
   if (!options_.record.empty()) TRY(check_new_recording(options_.record));
   TRY(need(options_.sheet.empty() || knows_scene(), "--sheet",
            "needs --scene with an eye on a cable: it compares the picture with what the eye looks at"));
@@ -222,7 +223,13 @@ Result<void> BoardRun::run_with(FrameSolver& solver, hal::FrameSink& sink, Frame
   auto pipeline =
       TRY(Pipeline::create(pipeline_settings(), source_->source(), solver, sink, session_.clock(), &observer));
   std::optional<RunWatch> watch;
-  if (!shows_pictures(options_)) watch.emplace(how_far());
+  watch.emplace([this, tell = how_far(), told = false]() mutable {
+    if (tell) tell();
+    const std::string failure = told ? std::string() : source_->failure();
+    if (failure.empty()) return;
+    told = true;
+    session_.note(failure);
+  });
   report_.summary = pipeline.run(session_.stop_requested());
   watch.reset();
   for (const std::string& sentence : source_->notes()) note(sentence);
@@ -236,6 +243,7 @@ Result<void> BoardRun::run_with(FrameSolver& solver, hal::FrameSink& sink, Frame
 /// On a terminal a line that is redrawn; elsewhere how the run goes, every few seconds.
 std::function<void()> BoardRun::how_far() {
   constexpr std::int64_t every_ns = 5'000'000'000;
+  if (shows_pictures(options_)) return {};
   const LiveStatus& status = keeper_->status();
   if (::isatty(STDERR_FILENO) == 1 && terminal_can_draw()) {
     return [this, &status, progress = session_.progress()] {

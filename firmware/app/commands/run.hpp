@@ -26,7 +26,8 @@ struct RunOptions {
   std::string replay;       ///< a recording instead of the board's eye; empty: none
   std::string replay_pace;  ///< fast or recorded; empty: fast
   std::string record;       ///< where the frames go besides; empty: nowhere
-  Overrides overrides;      ///< iterations, threads, lambda, sigma, distance
+  bool stop_if_unrecorded = false;
+  Overrides overrides;  ///< iterations, threads, lambda, sigma, distance
   std::string sheet;
   std::string report;
   std::string table;  ///< header, row or both; empty: no table

@@ -53,6 +53,10 @@ void add_scene_options(OptionList& options, RunOptions& o) {
       .where(one_of({"fast", "recorded"}));
   options.add("--record", o.record, "file for the raw frames besides, for --replay; never overwritten");
   options
+      .flag("--stop-if-unrecorded", o.stop_if_unrecorded,
+            "end the run when the recording fails, on a full disk for example (default: say so and go on)")
+      .needs("--record");
+  options
       .add("--scene-distance", o.scene.distance_mm,
            "of the scene alone in mm: the reconstruction goes on expecting it on the object plane")
       .where(length_mm());

@@ -8,6 +8,7 @@
 
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/sinks/contact_sheet.hpp"
+#include "firmware/sinks/frame_list_sink.hpp"
 #include "firmware/sinks/sink_list.hpp"
 #include "firmware/sinks/terminal_sink.hpp"
 #include "hal/try.hpp"
@@ -57,10 +58,12 @@ hal::Result<void> try_output_below(const std::string& file) {
 
 }  // namespace
 
-hal::Result<void> try_outputs(const RunOptions& options) {
-  if (!options.out.empty()) TRY(try_output_below(options.out + "/frames.npy"));
+hal::Result<std::optional<PictureFolder>> claim_outputs(const RunOptions& options) {
+  std::optional<PictureFolder> folder;
+  if (!options.out.empty()) folder = TRY(PictureFolder::claim(options.out));
   TRY(try_output_below(options.sheet));
-  return try_output_below(options.report);
+  TRY(try_output_below(options.report));
+  return folder;
 }
 
 bool shows_pictures(const RunOptions& options) {
@@ -78,6 +81,8 @@ std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, Session& s
   if (format.make != nullptr) {
     sinks->add(format.make(wanted));
     files.push_back(options.out + "/" + std::string(format.files));
+    files.push_back(options.out + "/" + PictureFolder::frame_list);
+    sinks->add(std::make_unique<FrameListSink>(files.back()));
   }
   if (!shows_pictures(options)) return sinks;
   auto screen = find_sink("terminal")->make(wanted);

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "firmware/app/commands/run.hpp"
 #include "firmware/app/session.hpp"
 #include "firmware/sinks/live_status.hpp"
+#include "firmware/sinks/picture_folder.hpp"
 #include "firmware/text/figures.hpp"
 #include "hal/frame_sink.hpp"
 #include "hal/image.hpp"
@@ -15,8 +17,9 @@
 namespace compueye::firmware {
 
 /// Makes the folders of everything that a run will write and tries whether files can be made there, before minutes of
-/// set-up are spent. Leaves nothing behind but folders. Errors: those of a file that cannot be written.
-[[nodiscard]] hal::Result<void> try_outputs(const RunOptions& options);
+/// set-up are spent; leaves nothing behind but folders. The folder of the pictures is the run's as long as what this
+/// returns lives. Errors: those of PictureFolder::claim() and of a file that cannot be written.
+[[nodiscard]] hal::Result<std::optional<PictureFolder>> claim_outputs(const RunOptions& options);
 
 /// Whether pictures go to the terminal: by default when it can draw and nothing else wants the standard output.
 [[nodiscard]] bool shows_pictures(const RunOptions& options);

@@ -167,6 +167,7 @@ void tell_frames(Figures& f, const RunReport& report) {
       "[, {health.dark_frames} dark][, {health.untrusted_times} with an untrusted time]"
       "[, {health.config_mismatches} with another configuration][, {health.read_timeouts} reads timed out]"
       "[; {health.masked_channels_min} to {health.masked_channels_max} channels masked]\n");
+  if (!report.files.empty()) f.say("written: " + fmt::format("{}", fmt::join(report.files, ", ")) + "\n");
   const std::string counters = hal::text_of(report.summary.source_counters);
   if (!counters.empty()) f.say("source: " + counters + "\n");
 }

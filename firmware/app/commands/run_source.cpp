@@ -61,6 +61,7 @@ Result<std::unique_ptr<recording::RecordingSource>> with_recorder(const Recordin
   settings.settings = header_text(request, board);
   settings.unix_minus_clock_ns = unix_minus(clock);
   settings.when_full = request.lossless ? recording::WhenFull::wait : recording::WhenFull::skip;
+  settings.stop_on_failure = request.stop_on_failure;
   return recording::RecordingSource::create(std::move(settings), source, clock);
 }
 
@@ -80,8 +81,9 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
   if (options.lossless && frames > 0) wanted.frame_limit = frames;
   made.source_ = TRY(board_source(board, std::move(wanted), clock));
   if (options.record.empty()) return made;
-  made.recorder_ = TRY(with_recorder({options.record, scene.name, options.scene.seed, options.seed, options.lossless},
-                                     board, *made.source_, clock));
+  made.recorder_ = TRY(with_recorder(
+      {options.record, scene.name, options.scene.seed, options.seed, options.lossless, options.stop_if_unrecorded},
+      board, *made.source_, clock));
   return made;
 }
 
@@ -110,10 +112,16 @@ std::vector<std::string> RunSource::notes() const {
     }
   }
   if (recorder_ && recorder_->unrecorded() > 0) {
-    notes.push_back(
-        fmt::format("{}: {} frames are not in it, which did not keep up", recorder_->path(), recorder_->unrecorded()));
+    notes.push_back(fmt::format("{}: {} frames are not in it, which {}", recorder_->path(), recorder_->unrecorded(),
+                                recorder_->failed() ? recorder_->error()->sentence : "did not keep up"));
   }
   return notes;
+}
+
+std::string RunSource::failure() const {
+  if (!recorder_ || !recorder_->failed()) return {};
+  return recorder_->error()->text() + "; " +
+         (recorder_->stops_on_failure() ? "the run ends" : "the run goes on and no frame is recorded from now on");
 }
 
 Result<void> RunSource::recorded() const {

@@ -21,7 +21,8 @@ struct RecordingRequest {
   std::string scene;
   std::uint64_t scene_seed = 0;
   std::uint64_t seed = 0;
-  bool lossless = false;  ///< waits for the disk
+  bool lossless = false;         ///< waits for the disk
+  bool stop_on_failure = false;  ///< frames end when the file fails
 };
 
 /// Whether a recording can be begun at `path`, so that it is known before the set-up and not after. Errors: io (there
@@ -52,6 +53,10 @@ class RunSource {
   [[nodiscard]] std::string name() const;
   /// Where the recording's board was another one, a sentence; empty: it was not, or there is no recording.
   [[nodiscard]] const std::string& mismatch() const noexcept { return mismatch_; }
+
+  /// What went wrong with the recording so that nothing more can be written, and what follows: empty as long as nothing
+  /// did. From any thread.
+  [[nodiscard]] std::string failure() const;
 
   // After the run:
   /// What there is to say about the recording that was read or written, a sentence each.

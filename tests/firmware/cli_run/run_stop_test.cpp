@@ -8,6 +8,7 @@
 #include "firmware/files/npy.hpp"
 #include "firmware/files/png.hpp"
 #include "tests/firmware/cli_run/copied_board.hpp"
+#include "tests/firmware/failure_check.hpp"
 
 using namespace compueye;
 using namespace compueye::test;
@@ -56,14 +57,16 @@ TEST_CASE("Ctrl-C ends a run with its summary, exit code 0 and a whole series of
     CHECK(partial_files(out) == 0);
     std::uint64_t pictures = 0;
     for (const auto& entry : std::filesystem::directory_iterator(out)) {
+      if (entry.path().filename() == "frames.csv") continue;
       CHECK(firmware::read_png(entry.path()).has_value());
       ++pictures;
     }
     CHECK(pictures == json["frames"]["delivered"].get<std::uint64_t>());
+    CHECK(static_cast<std::uint64_t>(lines(bytes_of(out / "frames.csv"))) == pictures + 1);
   }
 }
 
-TEST_CASE("an impatient second and third Ctrl-C leave nothing half-written") {
+TEST_CASE("the same signal within a moment is one, and a series of pictures ends whole") {
   const CopiedBoard board;
   const auto out = board.outside("out");
   Program program(board.run_arguments({"--frames", "0", "--out", out.string(), "--format", "npy", "--json"}));
@@ -87,4 +90,43 @@ TEST_CASE("an impatient second and third Ctrl-C leave nothing half-written") {
   const auto json = nlohmann::json::parse(ended.out, nullptr, false);
   REQUIRE_FALSE(json.is_discarded());
   CHECK(pictures->frames == json["frames"]["delivered"].get<std::int64_t>());
+}
+
+TEST_CASE("pictures of a run that is killed can be read, and say which frames they are") {
+  const CopiedBoard board;
+  const auto out = board.outside("out");
+  Program program(board.run_arguments({"--frames", "0", "--out", out.string(), "--format", "npy"}));
+  REQUIRE(under_way(program, [&] { return lines(bytes_of(out / "frames.csv")) > 8; }));
+  program.signal(SIGKILL);
+  CHECK(program.wait().exit_code == -1);
+  const std::string bytes = bytes_of(out / "frames.npy");
+  // What numpy does: as many as the header says, whatever stands behind them.
+  const std::size_t at = bytes.find("'shape': (");
+  REQUIRE(at != std::string::npos);
+  const auto told = std::stoul(bytes.substr(at + 10));
+  CHECK(told >= 8);
+  CHECK(bytes.size() >= 128 + told * 16 * 16 * sizeof(float));
+  const auto listed = static_cast<std::size_t>(lines(bytes_of(out / "frames.csv"))) - 1;
+  CHECK(told >= listed);
+  CHECK(told - listed <= 1);
+
+  // Another run does not mix with it.
+  const Ended again = board.run({"--frames", "2", "--out", out.string(), "--json"});
+  check_failed_json(again, hal::ErrorCode::io, out.string(), {});
+  CHECK(bytes_of(out / "frames.npy") == bytes);
+}
+
+TEST_CASE("two runs at once never share a folder") {
+  const CopiedBoard board;
+  const auto out = board.outside("out");
+  Program first(board.run_arguments({"--frames", "0", "--out", out.string()}));
+  REQUIRE(under_way(first, [&] { return pictures_in(out) > 0; }));
+  const Ended second = board.run({"--frames", "2", "--out", out.string(), "--json"});
+  check_failed_json(second, hal::ErrorCode::io, out.string(), {});
+  first.signal(SIGTERM);
+  const Ended ended = first.wait();
+  CHECK(ended.exit_code == 0);
+  // The summary says where they are.
+  CHECK(contains(ended.out, (out / "frame-*.png").string()));
+  CHECK(contains(ended.out, (out / "frames.csv").string()));
 }

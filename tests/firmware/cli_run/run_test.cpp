@@ -60,14 +60,15 @@ TEST_CASE("pictures are written whole, one a frame, in every format") {
       CHECK(picture->rows == 16);
       CHECK(picture->cols == 16);
     }
-    CHECK(std::distance(std::filesystem::directory_iterator(out), {}) == 3);
+    CHECK(std::distance(std::filesystem::directory_iterator(out), {}) == 4);  // and frames.csv
   }
   const auto out = board.outside("npy");
   board.run_json({"--frames", "3", "--lossless", "--out", out.string(), "--format", "npy"});
   const auto pictures = firmware::read_pictures(out / "frames.npy");
   REQUIRE_MESSAGE(pictures.has_value(), pictures.error().text());
   CHECK(pictures->frames == 3);
-  CHECK(std::distance(std::filesystem::directory_iterator(out), {}) == 1);
+  CHECK(std::distance(std::filesystem::directory_iterator(out), {}) == 2);
+  CHECK(lines(bytes_of(out / "frames.csv")) == 1 + 3);
 }
 
 TEST_CASE("the same seed gives the same pictures and another seed others") {
