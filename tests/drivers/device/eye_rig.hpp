@@ -136,8 +136,8 @@ class EyeRig {
   [[nodiscard]] std::uint64_t delivered() const { return delivered_; }
   [[nodiscard]] std::uint64_t invalid_channels() const { return invalid_channels_; }
 
-  /// What an eye that has forgotten made is estimated, and docs/faults.md says how far off: too few by the frames of
-  /// the outage at most, too many by those of 200 ms. Otherwise every frame has the number that it has in the run.
+  /// What an eye that has forgotten made is estimated, and docs/faults.md says how far off: by the frames of the outage
+  /// and 200 ms at most. Otherwise every frame has the number that it has in the run.
   bool estimates_may_err = false;
   /// By how many the books are off: too many are positive.
   [[nodiscard]] std::int64_t miscounted() const { return miscounted_; }
@@ -152,12 +152,13 @@ class EyeRig {
     last_boots_ = boots;
     last_estimated_ = estimated;
     if (!forgotten) return;
-    constexpr std::int64_t period_ns = 10 * ms, most_too_many = 200 * ms / period_ns;
-    const std::int64_t most_too_few = std::min<std::int64_t>((clock.now_ns() - last_frame_ns_) / period_ns + 2, 2000);
-    const std::int64_t before = miscounted_;
-    for (std::int64_t off = 0; off <= std::max(most_too_few, most_too_many); ++off) {
-      if (off <= most_too_few && wrong_codes(block, before - off) == 0) miscounted_ = before - off;
-      if (off <= most_too_many && wrong_codes(block, before + off) == 0) miscounted_ = before + off;
+    constexpr std::int64_t period_ns = 10 * ms;
+    const std::int64_t before = miscounted_, outage_ns = clock.now_ns() - last_frame_ns_ + 200 * ms;
+    // Samples of 12 bits tell frames apart that are less than 4096 from one another.
+    for (std::int64_t off = 0; off <= std::min<std::int64_t>(outage_ns / period_ns, 2000); ++off) {
+      for (const std::int64_t miscount : {before - off, before + off}) {
+        if (wrong_codes(block, miscount) == 0) miscounted_ = miscount;
+      }
       if (wrong_codes(block, miscounted_) == 0) return;
     }
   }
