@@ -1,5 +1,7 @@
 #include "firmware/files/factor_cache.hpp"
 
+#include <unistd.h>
+
 #include <bit>
 #include <cstring>
 #include <filesystem>
@@ -144,6 +146,7 @@ Result<recon::Factor> load_factor(const std::string& folder, const FactorKey& ke
   const std::string path = factor_path(folder, key);
   TRY(check_key(path, key));
   const FileDescriptor file = TRY(open_for_reading(path));
+  TRY(check_own(file, path));
   Header header{};
   const std::size_t got = TRY(read_some(file, path, std::as_writable_bytes(std::span(&header, 1))));
   recon::Factor factor{key.rho, key.order, {}, key.metric, key.rank};
@@ -180,6 +183,8 @@ Result<void> store_factor(const std::string& folder, const FactorKey& key, const
   TRY(make_folder(folder, "cannot be made to store a factor in"));
   const auto payload = std::as_bytes(std::span(factor.values));
   const Header header = header_for(key, factor.values.size(), XXH3_64bits(payload.data(), payload.size()));
+  // One that is not believed would leave its owner and permissions to the new one.
+  if (const auto older = open_for_reading(path); older && !check_own(*older, path)) ::unlink(path.c_str());
   AtomicFile file = TRY(AtomicFile::create(path));
   TRY(file.write(std::as_bytes(std::span(&header, 1))));
   TRY(file.write(payload));

@@ -26,9 +26,9 @@ struct FactorKey {
 /// "<folder>/factor-<16 hex digits of the key's hash>.bin"
 [[nodiscard]] std::string factor_path(const std::string& folder, const FactorKey& key);
 
-/// Errors: not_found (nothing stored under this key), stale (stored by another version of this program, or for another
-/// key), bad_format (truncated, too long, or damaged: the checksum is wrong), io. Never a factor that is not the one
-/// asked for.
+/// Errors: not_found (nothing stored under this key), stale (stored by another version of this program, for another
+/// key, or where somebody else can have written it), bad_format (truncated, too long, or damaged: the checksum is
+/// wrong), io. Never a factor that is not the one asked for.
 [[nodiscard]] hal::Result<recon::Factor> load_factor(const std::string& folder, const FactorKey& key);
 
 /// Stores atomically, making the folder when it is missing. A board's folder may well be read-only: the caller can go

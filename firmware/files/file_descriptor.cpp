@@ -97,6 +97,20 @@ hal::Result<FileDescriptor> open_for_reading(const std::string& path) {
   return file;
 }
 
+hal::Result<void> check_own(const FileDescriptor& file, const std::string& path) {
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) return tl::unexpected(file_error(errno, path, "cannot be read"));
+  if (status.st_uid != ::geteuid() && status.st_uid != 0) {
+    return hal::fail(hal::ErrorCode::stale, path,
+                     "belongs to user " + std::to_string(status.st_uid) + ", so what it holds is not believed");
+  }
+  // A group of one's own, as most systems give everybody, is no other.
+  if ((status.st_mode & S_IWOTH) != 0 || ((status.st_mode & S_IWGRP) != 0 && status.st_gid != ::getegid())) {
+    return hal::fail(hal::ErrorCode::stale, path, "can be written by others, so what it holds is not believed");
+  }
+  return {};
+}
+
 std::optional<std::uint64_t> regular_size(const FileDescriptor& file) noexcept {
   struct stat status {};
   if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;

@@ -48,6 +48,10 @@ class FileDescriptor {
 /// Opens for reading. Errors: not_found, io (a folder, no permission).
 [[nodiscard]] hal::Result<FileDescriptor> open_for_reading(const std::string& path);
 
+/// Whether nobody but this user and root can have written it, for what is believed without being made again. Error
+/// stale, which says who else.
+[[nodiscard]] hal::Result<void> check_own(const FileDescriptor& file, const std::string& path);
+
 /// Size in bytes of a regular file; nothing for a pipe or a device, whose end is only known once it is reached.
 [[nodiscard]] std::optional<std::uint64_t> regular_size(const FileDescriptor& file) noexcept;
 

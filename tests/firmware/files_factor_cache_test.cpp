@@ -1,4 +1,6 @@
 #include <doctest/doctest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -124,4 +126,22 @@ TEST_CASE("a folder that cannot be written gives an error and nothing else") {
   CHECK_FALSE(store_factor("/proc/compueye", key, some_factor(50, 0.125)).has_value());
   CHECK(load_factor(folder / "file", key).error().code == ErrorCode::not_found);
   CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("a factor that somebody else can have written is not believed, and replaced by an own one") {
+  const TemporaryFolder folder;
+  const auto cache = folder / "cache";
+  const recon::Factor factor = some_factor(50, 0.125);
+  REQUIRE(store_factor(cache, key, factor).has_value());
+  const std::string path = factor_path(cache, key);
+  const auto spoil = [&](int way) {
+    return way == 0 ? ::chmod(path.c_str(), 0666) : ::chown(path.c_str(), 65534, 65534);
+  };
+  for (const int way : {0, 1}) {
+    CAPTURE(way);
+    if (spoil(way) != 0) continue;  // only root can give files away
+    test::check_error(load_factor(cache, key), ErrorCode::stale, path, {});
+    REQUIRE(store_factor(cache, key, factor).has_value());
+    CHECK(load_factor(cache, key).has_value());
+  }
 }
