@@ -68,7 +68,6 @@ hal::Error UartTransport::failure(int error, const char* doing) const {
 }
 
 hal::Result<void> UartTransport::set_up_terminal() const {
-  if (::isatty(file_) == 0) return {};
   const auto* const rate = std::find_if(rates.begin(), rates.end(), [&](const Rate& r) { return r.baud == baud_; });
   if (rate == rates.end()) {
     return hal::fail(ErrorCode::usage, description_.bus,
@@ -93,6 +92,11 @@ hal::Result<void> UartTransport::open() {
   close();
   file_ = ::open(description_.bus.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (file_ < 0) return tl::unexpected(failure(errno, "opened"));
+  // Before the first byte: requests would overwrite a file, and other devices never stop answering.
+  if (::isatty(file_) == 0) {
+    close();
+    return hal::fail(ErrorCode::usage, description_.bus, "is no serial port and no pseudo-terminal");
+  }
   return set_up_terminal();
 }
 

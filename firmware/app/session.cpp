@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "firmware/files/output_target.hpp"
 #include "firmware/files/partial_file.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
@@ -202,8 +203,18 @@ hal::Result<void> Session::print(const std::string& text) {
   return print_text(text, out_, patience());
 }
 
+hal::Result<void> Session::share_output(std::string_view option, const std::string& file) {
+  if (file.empty() || named_stream(file) != 1) return {};
+  if (json_) {
+    return hal::fail(hal::ErrorCode::usage, std::string(option),
+                     "cannot go with --json: both would write to the standard output");
+  }
+  data_on_stdout_ = true;
+  return {};
+}
+
 hal::Result<void> Session::print(Figures figures) {
-  if (!json_) return print(figures.text());
+  if (!json_) return print_text(figures.text(), data_on_stdout_ ? err_ : out_, patience());
   report_ = std::move(figures);
   return {};
 }

@@ -100,6 +100,9 @@ class Session {
   void say(std::string_view line);
   /// A sentence beside the report, on stderr.
   void note(std::string_view sentence);
+  /// The data that `option` names as `file` may be standard output: then the report as text goes to stderr. Error usage
+  /// with --json, whose object needs standard output for itself.
+  [[nodiscard]] hal::Result<void> share_output(std::string_view option, const std::string& file);
   /// The report of the command, which prints one only: as text at once, or with --json as one object when the command
   /// has ended, with a failure after it as its member "error". Error io or no_space when standard output refuses it.
   [[nodiscard]] hal::Result<void> print(Figures figures);
@@ -121,6 +124,7 @@ class Session {
   hal::MonotonicClock clock_;
   bool json_ = false;
   OutputStream out_{1}, err_{2};
+  bool data_on_stdout_ = false;
   std::optional<Figures> report_;  // to be printed at the end, with --json
   std::optional<ProgressReporter> reporter_;
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "firmware/eye/source_kinds.hpp"
+#include "firmware/files/cache_folder.hpp"
 #include "hal/try.hpp"
 #include "recon/solver_list.hpp"
 
@@ -133,7 +134,7 @@ double Board::noise_sigma() const noexcept {
 }
 
 std::string Board::cache() const {
-  return (std::filesystem::path(folder) / ".cache").string();
+  return cache_folder(folder);
 }
 
 std::string Board::place(std::string_view section, std::string_view key) const {

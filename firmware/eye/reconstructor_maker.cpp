@@ -35,7 +35,12 @@ hal::Result<recon::Reconstructor> ReconstructorMaker::make(const recon::Objectiv
     return recon::Reconstructor::create(response(), objective, plan, std::nullopt, progress);
   }
   const FactorKey key = factor_key(response(), recon::Reconstructor::wanted_factor(response(), objective, plan));
-  auto made = TRY(recon::Reconstructor::create(response(), objective, plan, made_before(key), progress));
+  auto tried = recon::Reconstructor::create(response(), objective, plan, made_before(key), progress);
+  if (!tried && origin_ == FactorOrigin::kept && tried.error().code == hal::ErrorCode::stale) {
+    note_unusable(tried.error());
+    tried = recon::Reconstructor::create(response(), objective, plan, std::nullopt, progress);
+  }
+  auto made = TRY(std::move(tried));
   if (origin_ != FactorOrigin::kept) keep(key, made.factor());
   // One that goes with its lambda is shared by nobody.
   const bool wanted_again = memory_ == Memory::remembers && plan.solver->rho != recon::RhoUse::lambda;
@@ -60,9 +65,13 @@ std::optional<recon::Factor> ReconstructorMaker::made_before(const FactorKey& ke
   }
   const hal::Error& error = loaded.error();
   if (error.code == hal::ErrorCode::not_found) return std::nullopt;
+  note_unusable(error);
+  return std::nullopt;
+}
+
+void ReconstructorMaker::note_unusable(const hal::Error& error) {
   if (error.code == hal::ErrorCode::stale || error.code == hal::ErrorCode::bad_format) origin_ = FactorOrigin::replaced;
   notes_.push_back("the stored factor cannot be used and is made again: " + error.text());
-  return std::nullopt;
 }
 
 void ReconstructorMaker::keep(const FactorKey& key, const recon::Factor& factor) {

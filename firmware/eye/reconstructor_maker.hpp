@@ -51,6 +51,7 @@ class ReconstructorMaker {
 
  private:
   [[nodiscard]] std::optional<recon::Factor> made_before(const FactorKey& key);
+  void note_unusable(const hal::Error& error);
   void keep(const FactorKey& key, const recon::Factor& factor);
 
   const recon::Response& response_;

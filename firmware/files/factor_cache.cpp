@@ -149,7 +149,7 @@ Result<recon::Factor> load_factor(const std::string& folder, const FactorKey& ke
   TRY(check_own(file, path));
   Header header{};
   const std::size_t got = TRY(read_some(file, path, std::as_writable_bytes(std::span(&header, 1))));
-  recon::Factor factor{key.rho, key.order, {}, key.metric, key.rank};
+  recon::Factor factor{key.rho, key.order, {}, key.metric, key.rank, true};
   if (got != sizeof header) return wrong_length(path, sizeof header, "only " + std::to_string(got));
   TRY(check_header(path, header, key));
   const auto count = static_cast<std::size_t>(header.values);

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "firmware/files/atomic_file.hpp"
+#include "firmware/files/file_descriptor.hpp"
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
 
@@ -231,14 +232,17 @@ void check_whole(const Sweep& sweep) {
 }
 
 Result<Json> read_json(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    std::error_code ignored;
-    const bool there = fs::exists(path, ignored);
-    return hal::fail(there ? ErrorCode::io : ErrorCode::not_found, path,
-                     there ? "cannot be read" : "is not there: nothing was measured yet");
+  const auto file = open_for_reading(path);
+  if (!file && file.error().code == ErrorCode::not_found) {
+    return hal::fail(ErrorCode::not_found, path, "is not there: nothing was measured yet");
   }
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!file) return tl::unexpected(file.error());
+  TRY(check_own(*file, path));
+  std::string text;
+  std::array<std::byte, 65536> piece{};
+  while (const std::size_t got = TRY(read_some(*file, path, piece))) {
+    text.append(reinterpret_cast<const char*>(piece.data()), got);
+  }
   Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.is_object() || !json.contains("format") || json["format"] != Json(format_name)) {
     return hal::fail(ErrorCode::bad_format, path,

@@ -30,7 +30,8 @@ struct Factor {
   int order = 0;              ///< number of seeing rows
   std::vector<float> values;  ///< factor_size() or modes_size() of its classes
   MetricKind metric = MetricKind::identity;
-  int rank = 0;  ///< how many modes, 0: it is an inverse
+  int rank = 0;            ///< how many modes, 0: it is an inverse
+  bool from_file = false;  ///< tried (recon/setup/factor_check.hpp) before it is believed
 };
 
 class ParityClasses;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "recon/setup/factor_check.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 
 namespace compueye::recon {
@@ -42,6 +43,7 @@ hal::Result<void> fill_inverse(SetUp<T>& from, const ParityClasses& classes, cor
     return stale(*from.stored, from.plan, from.seeing.rows());
   }
   problem.rho = static_cast<T>(from.plan.rho);
+  const bool tried = from.stored && from.stored->from_file;
   const T* values = nullptr;
   if constexpr (std::is_same_v<T, float>) {
     from.factor.values = from.stored
@@ -52,6 +54,9 @@ hal::Result<void> fill_inverse(SetUp<T>& from, const ParityClasses& classes, cor
     values = from.kept.keep(TRY(packed_inverse<T>(from.seeing, from.factor.metric, from.plan.rho, from.progress)));
   }
   problem.inverse = make_inverse(classes, values, from.kept);
+  if constexpr (std::is_same_v<T, float>) {
+    if (tried && !inverts(problem.inverse, from.seeing, problem.metric, from.plan.rho)) return not_a_factor();
+  }
   problem.inverse.crew = from.crew;
   return {};
 }

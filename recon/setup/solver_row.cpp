@@ -49,6 +49,12 @@ hal::Result<void> stale(const Factor& stored, const Plan& plan, int seeing) {
                        std::to_string(seeing));
 }
 
+hal::Result<void> not_a_factor() {
+  return hal::fail(hal::ErrorCode::stale, "factor",
+                   "has the right checksums, but not the values of this response: it was damaged before it was stored, "
+                   "or somebody else made it");
+}
+
 template <class T>
 core::PenaltySchedule<T> schedule_of(const PenaltyLevels& levels, KeptTables& kept) {
   const std::vector<T> penalties(levels.penalties.begin(), levels.penalties.end());

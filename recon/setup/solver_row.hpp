@@ -47,6 +47,8 @@ template <class Problem, class T>
 
 /// The stored factor was made for another problem. Error stale.
 [[nodiscard]] hal::Result<void> stale(const Factor& stored, const Plan& plan, int seeing);
+/// It was said to be this problem's, and is not. Error stale.
+[[nodiscard]] hal::Result<void> not_a_factor();
 
 /// A schedule of these penalties.
 template <class T>

@@ -1,10 +1,16 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware/eye/reconstructor_maker.hpp"
+#include "firmware/files/factor_cache.hpp"
 #include "recon/solver_list.hpp"
+#include "tests/firmware/temporary_folder.hpp"
 #include "tests/recon/random_problem.hpp"
+#include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -51,4 +57,41 @@ TEST_CASE("what no other reconstructor could want is not remembered") {
   CHECK(origins(Memory::remembers, solver_named("tikhonov")) == each_its_own);  // rho is lambda
   CHECK(origins(Memory::remembers, solver_named("cp")) == each_its_own);
   CHECK(origins(Memory::remembers, solver_named("admm"), recon::Precision::f64) == each_its_own);
+}
+
+TEST_CASE("a stored factor with right checksums and wrong values is made again, and the picture is the right one") {
+  tests::Random random(6);
+  const recon::Response a = tests::random_response(random, 30, tests::Picture{6, 6}, 0.5);
+  std::vector<float> y(30);
+  for (float& value : y) value = static_cast<float>(random.uniform());
+  recon::Objective objective;
+  objective.lambda = 0.1;
+  using Solver = std::pair<const char*, recon::BasisKind>;
+  for (const auto& [solver, basis] : {Solver{"admm", recon::BasisKind::identity}, Solver{"admm", recon::BasisKind::tv},
+                                      Solver{"adm", recon::BasisKind::dct}, Solver{"pdhg", recon::BasisKind::dct}}) {
+    CAPTURE(solver);
+    recon::Plan plan;
+    plan.solver = solver_named(solver);
+    objective.basis = basis;
+    const test::TemporaryFolder folder;
+    const std::string cache = folder.path().string();
+    const FactorKey key = factor_key(a, recon::Reconstructor::wanted_factor(a, objective, plan));
+    const auto frame = [&](FactorOrigin expected) {
+      ReconstructorMaker maker(a, std::nullopt, cache, Memory::forgets);
+      const auto reconstructor = maker.make(objective, plan, {});
+      REQUIRE(reconstructor);
+      CHECK(maker.origin() == expected);
+      CHECK(maker.notes().empty() == (expected != FactorOrigin::replaced));
+      return tests::solve_frame(*reconstructor, y).x;
+    };
+    const std::vector<float> right = frame(made);
+    CHECK(frame(kept) == right);
+    for (const float factor : {0.9F, -1.0F, std::nanf("")}) {
+      recon::Factor forged = load_factor(cache, key).value();
+      for (float& value : forged.values) value *= factor;
+      REQUIRE(store_factor(cache, key, forged));
+      CHECK(frame(FactorOrigin::replaced) == right);
+      CHECK(frame(kept) == right);
+    }
+  }
 }

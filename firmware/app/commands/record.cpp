@@ -125,6 +125,7 @@ Figures report_of(const Board& board, const std::string& scene, const RecordingS
 /// Records a board's eye until there are enough frames, the time is over, the user stops it or the file fails; what was
 /// recorded until then stays. Prints what is in the file.
 Result<void> record(const RecordRequest& o, Session& session) {
+  TRY(session.share_output("--out", o.out));
   TRY(check(o));
   Board board = TRY(load_board(o.board));
   TRY(check_new_recording(o.out));

@@ -67,6 +67,7 @@ Figures& add_written(const std::string& out, Figures& f) {
 /// The response that a board's geometry gives, or one as a calibration of such an eye might find it, as a file, and its
 /// figures on stdout.
 Result<void> write_nominal(const ResponseRequest& o, Session& session) {
+  TRY(session.share_output("--out", o.out));
   Board board = TRY(load_board(o.board));
   TRY(o.overrides.apply(board));
   TRY(try_response_output(o.out, board.eye.ommatidia(), board.object.pixels()));

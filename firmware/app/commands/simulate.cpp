@@ -162,6 +162,8 @@ Figures report_of(const Board& board, const sim::Scene& scene, const Samples& sa
 /// Writes the samples of a board's simulated eye: float32, (M,) for one frame and (frames, M) for more, by ommatidium,
 /// in units of one fully seen white pixel with dark level and LSB taken out; channels that tell nothing are NaN.
 Result<void> simulate(const SimulateRequest& request, Session& session) {
+  TRY(session.share_output("--out", request.out));
+  TRY(session.share_output("--truth", request.truth));
   TRY(check(request));
   Board board = TRY(load_board(request.board));
   TRY(request.overrides.apply(board));

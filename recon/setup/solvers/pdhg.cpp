@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "recon/setup/dual_step_tables.hpp"
+#include "recon/setup/factor_check.hpp"
 #include "recon/setup/inverse_tables.hpp"
 #include "recon/setup/leading_modes.hpp"
 #include "recon/setup/penalty_rule.hpp"
@@ -112,6 +113,8 @@ struct Method {
     if (from.stored && from.stored->values.size() != modes_size(classes, from.plan.rank)) {
       return stale(*from.stored, from.plan, from.seeing.rows());
     }
+    if (from.stored && from.stored->from_file && !are_modes(from.stored->values, from.plan.rank, from.seeing, classes))
+      return not_a_factor();
     from.factor.values =
         from.stored ? std::move(from.stored->values) : TRY(leading_modes(from.seeing, from.plan.rank, from.progress));
     return {};

@@ -195,7 +195,9 @@ TEST_CASE("a full disk is told while the recording runs, and the file's own book
     if (ends) check_error(read, hal::ErrorCode::no_space, recorder.path(), {});
     recorder.source->stop();
     CHECK(recorder.source->recorded() == 10);
-    CHECK(recorder.source->unrecorded() == (ends ? 2 : 3));
+    // How many the eye gave before the writer's thread had met the end of the disk is that thread's affair.
+    CHECK(recorder.source->unrecorded() == recorder.eye.account().delivered - 10);
+    if (!ends) CHECK(recorder.source->unrecorded() == 3);
     auto reader = RecordingReader::open(recorder.path());
     REQUIRE(reader);
     while (reader->next()) {

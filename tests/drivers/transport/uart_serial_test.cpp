@@ -7,6 +7,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
@@ -195,6 +198,16 @@ TEST_CASE("a port that is none, or has no such rate, is refused by name") {
   test::check_error(missing.open(), hal::ErrorCode::not_found, "/nowhere/tty", {});
   std::vector<std::byte> chunk(8);
   CHECK(missing.read(chunk, 0).error().code == hal::ErrorCode::usage);
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("compueye-uart-" + std::to_string(::getpid()))).string();
+  std::ofstream(file) << "keep me";
+  for (const std::string& no_port : {file, std::string("/dev/zero")}) {
+    UartTransport none(no_port, 115'200);
+    test::check_error(none.open(), hal::ErrorCode::usage, no_port, {});
+  }
+  std::ifstream kept(file);
+  CHECK(std::string(std::istreambuf_iterator<char>(kept), {}) == "keep me");
+  std::filesystem::remove(file);
   const int master = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   if (master < 0 || ::grantpt(master) != 0 || ::unlockpt(master) != 0) return;
   const std::string slave = ::ptsname(master);

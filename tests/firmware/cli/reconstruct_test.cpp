@@ -55,6 +55,26 @@ double relative_distance(std::span<const double> a, std::span<const double> b) {
 
 }  // namespace
 
+TEST_CASE("pictures on standard output are all there is on it, and --json does not go with them") {
+  const TemporaryFolder folder;
+  put_frames(folder, 1);
+  const auto piped = run_compueye(std::string(small_eye) + "--sigma 0.01 --iterations 20 --out -", folder.path());
+  CHECK(piped.exit_code == 0);
+  CHECK(piped.out.starts_with("\x93NUMPY"));
+  CHECK(piped.err.find("objective") != std::string::npos);
+  const auto filed = run_compueye(std::string(small_eye) + "--sigma 0.01 --iterations 20 --out x.npy", folder.path());
+  CHECK(filed.exit_code == 0);
+  CHECK(piped.out == bytes_of(folder.path() / "x.npy"));
+  for (const char* both : {"--out - --json", "--out /dev/stdout --json", "--png - --json"}) {
+    CAPTURE(both);
+    const auto refused = run_compueye(std::string(small_eye) + "--sigma 0.01 " + both, folder.path());
+    CHECK(refused.exit_code == 2);
+    const auto json = nlohmann::json::parse(refused.out, nullptr, false);
+    REQUIRE_FALSE(json.is_discarded());
+    CHECK(json["error"]["code"] == "usage");
+  }
+}
+
 TEST_CASE("reconstructing twice gives identical bytes") {
   const TemporaryFolder folder;
   put_frames(folder, 2);

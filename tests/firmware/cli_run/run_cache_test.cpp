@@ -1,8 +1,11 @@
 #include <doctest/doctest.h>
+#include <stdlib.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "tests/firmware/cli_run/copied_board.hpp"
+#include "tests/firmware/temporary_folder.hpp"
 #include "tests/hal/error_check.hpp"
 
 using namespace compueye::test;
@@ -14,6 +17,15 @@ const std::vector<std::string> one_frame{"--frames", "1", "--lossless"};
 double nmse(const nlohmann::json& json) {
   return json["quality"]["nmse"].get<double>();
 }
+
+/// Where the programs of a test find their user's caches.
+class UserCaches {
+ public:
+  explicit UserCaches(const std::filesystem::path& folder) { ::setenv("XDG_CACHE_HOME", folder.c_str(), 1); }
+  UserCaches(const UserCaches&) = delete;
+  UserCaches& operator=(const UserCaches&) = delete;
+  ~UserCaches() { ::unsetenv("XDG_CACHE_HOME"); }
+};
 
 }  // namespace
 
@@ -65,9 +77,19 @@ TEST_CASE("whatever is damaged in the cache is computed again, to the same pictu
   CHECK(board.run_json(one_frame)["factor"] == "kept");
 }
 
+TEST_CASE("a board whose folder cannot be written keeps what it makes in the user's caches") {
+  const CopiedBoard board;
+  std::ofstream(board.cache()) << "a file where the folder should be";
+  const TemporaryFolder caches;
+  const UserCaches here(caches.path());
+  CHECK(board.run_json(one_frame)["factor"] == "made");
+  CHECK(board.run_json(one_frame)["factor"] == "kept");
+}
+
 TEST_CASE("a cache that cannot be written costs a warning and nothing else") {
   const CopiedBoard board;
   std::ofstream(board.cache()) << "a file where the folder should be";
+  const UserCaches nowhere(board.cache() / "below");
   const auto json = board.run_json(one_frame);
   CHECK(json["factor"] == "made");
   CHECK(names(json["notes"].dump(), board.cache().string()));
