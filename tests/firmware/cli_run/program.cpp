@@ -5,8 +5,14 @@
 #include <spawn.h>
 #include <stdlib.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+#include <string>
 #include <system_error>
 #include <thread>
 
@@ -20,6 +26,15 @@ namespace {
 
 constexpr std::chrono::seconds limit{200};
 constexpr std::chrono::milliseconds look_again{2};
+
+/// A mask of signals in /proc/PID/status; all of them where there is none.
+std::uint64_t signals_of(pid_t pid, const std::string& field) {
+  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(field)) return std::stoull(line.substr(field.size()), nullptr, 16);
+  }
+  return ~std::uint64_t{0};
+}
 
 std::filesystem::path make_folder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "compueye-program-XXXXXX").string();
@@ -62,6 +77,27 @@ void Program::signal(int number) const {
 bool Program::running() {
   if (!over_ && ::waitpid(pid_, &status_, WNOHANG) == pid_) over_ = true;
   return !over_;
+}
+
+bool Program::hears(int number) const {
+  return over_ || (signals_of(pid_, "SigBlk:") >> (number - 1) & 1U) != 0;
+}
+
+bool Program::computes() const {
+  std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
+  std::string line;
+  std::getline(file, line);
+  // Behind the name: state, ten numbers, then the ticks it has had.
+  std::istringstream fields(line.substr(std::min(line.size(), line.rfind(')') + 1)));
+  std::string skipped;
+  for (int k = 0; k < 11; ++k) fields >> skipped;
+  long ticks = 0;
+  fields >> ticks;
+  return over_ || ticks * 10 >= ::sysconf(_SC_CLK_TCK);
+}
+
+bool Program::heard() const {
+  return over_ || signals_of(pid_, "ShdPnd:") == 0;
 }
 
 Ended Program::wait() {

@@ -28,6 +28,12 @@ class Program {
 
   void signal(int number) const;
   [[nodiscard]] bool running();
+  /// Whether it is beyond its beginnings: this signal is its own to take, and no longer kills it.
+  [[nodiscard]] bool hears(int number) const;
+  /// Whether it has computed for a tenth of a second, on its own clock.
+  [[nodiscard]] bool computes() const;
+  /// Whether every signal that was sent has been taken.
+  [[nodiscard]] bool heard() const;
   [[nodiscard]] Ended wait();
 
  private:

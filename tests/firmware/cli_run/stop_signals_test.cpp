@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 
+#include "drivers/recording/recording_format.hpp"
 #include "tests/firmware/cli_run/copied_board.hpp"
 
 using namespace compueye;
@@ -70,11 +71,22 @@ int waiting_in(int pipe) {
   return ::ioctl(pipe, FIONREAD, &bytes) == 0 ? bytes : 0;
 }
 
-/// There are bytes in it, and while frames come no more go in.
-bool stays_full(int pipe) {
-  const int before = waiting_in(pipe);
-  std::this_thread::sleep_for(std::chrono::milliseconds(250));
-  return before > 3000 && waiting_in(pipe) == before;
+/// A pipe of one page has no room for another block of the small board's frames.
+constexpr int pipe_bytes = 4096;
+bool is_full(int pipe) {
+  return waiting_in(pipe) > pipe_bytes - static_cast<int>(recording::frame_block_bytes(64, 12));
+}
+
+/// A first signal, which is heard, and then others: those within a fifth of a second count as the same request.
+Ended ended_by_second(Program& program, int first, int second) {
+  program.signal(first);
+  REQUIRE(comes_true(program, [&] { return program.heard(); }));
+  static_cast<void>(comes_true(program, [&] {
+    program.signal(second);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return false;
+  }));
+  return program.wait();
 }
 
 std::uintmax_t size_of(const std::filesystem::path& file) {
@@ -107,7 +119,7 @@ TEST_CASE("a reader of the pictures that sleeps does not hold the run, whose fil
   const CopiedBoard board;
   int pipe[2];
   REQUIRE(::pipe2(pipe, O_CLOEXEC) == 0);
-  ::fcntl(pipe[1], F_SETPIPE_SZ, 4096);
+  ::fcntl(pipe[1], F_SETPIPE_SZ, pipe_bytes);
   const auto file = board.outside("eye.rec");
   Program program(board.run_arguments({"--frames", "0", "--show", "--record", file.string()}), pipe[1]);
   CHECK(comes_true(program, [&] { return size_of(file) > 20'000; }));
@@ -142,15 +154,11 @@ TEST_CASE("a second signal ends at once what the first one could not") {
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   REQUIRE(reader >= 0);
-  ::fcntl(reader, F_SETPIPE_SZ, 4096);
+  ::fcntl(reader, F_SETPIPE_SZ, pipe_bytes);
   Program program({"record", "--board", board.path().string(), "--frames", "0", "--out", pipe.string()});
   // What is recorded then waits for a reader that never comes.
-  REQUIRE(comes_true(program, [&] { return stays_full(reader); }));
-  program.signal(SIGTERM);
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
-  REQUIRE(program.running());
-  program.signal(SIGINT);
-  const Ended ended = program.wait();
+  REQUIRE(comes_true(program, [&] { return is_full(reader); }));
+  const Ended ended = ended_by_second(program, SIGTERM, SIGINT);
   CHECK(ended.exit_code == 128 + SIGINT);
   CHECK(contains(ended.err, "signal"));
   ::close(reader);
@@ -161,7 +169,7 @@ TEST_CASE("every signal that asks a command to stop is heard by one that compute
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     const auto out = board.outside("y.npy");
     Program program({"simulate", "--board", board.path().string(), "--frames", "1000000", "--out", out.string()});
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    REQUIRE(comes_true(program, [&] { return program.hears(number) && program.computes(); }));
     program.signal(number);
     const Ended ended = program.wait();
     CHECK(ended.exit_code == 1);
@@ -179,7 +187,7 @@ TEST_CASE("the cursor is given back by Ctrl-Z and by a second signal, and hidden
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   REQUIRE(reader >= 0);
-  ::fcntl(reader, F_SETPIPE_SZ, 4096);
+  ::fcntl(reader, F_SETPIPE_SZ, pipe_bytes);
   Program program(board.run_arguments({"--frames", "0", "--record", pipe.string()}), terminal.fd());
   std::string shown;
   const auto shows = [&](const std::string& what) {
@@ -198,13 +206,9 @@ TEST_CASE("the cursor is given back by Ctrl-Z and by a second signal, and hidden
   // The recorder's pipe is full by then, or soon: only a second signal ends the run.
   REQUIRE(comes_true(program, [&] {
     shown = terminal.shown();
-    return stays_full(reader);
+    return is_full(reader);
   }));
-  program.signal(SIGTERM);
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
-  shown = terminal.shown();
-  program.signal(SIGTERM);
-  CHECK(program.wait().exit_code == 128 + SIGTERM);
+  CHECK(ended_by_second(program, SIGTERM, SIGTERM).exit_code == 128 + SIGTERM);
   shown += terminal.shown();
   CHECK(contains(shown, "\x1b[?25h"));
   ::close(reader);
