@@ -1,7 +1,5 @@
 #include "firmware/files/factor_cache.hpp"
 
-#include <unistd.h>
-
 #include <bit>
 #include <cstring>
 #include <filesystem>
@@ -183,8 +181,7 @@ Result<void> store_factor(const std::string& folder, const FactorKey& key, const
   TRY(make_folder(folder, "cannot be made to store a factor in"));
   const auto payload = std::as_bytes(std::span(factor.values));
   const Header header = header_for(key, factor.values.size(), XXH3_64bits(payload.data(), payload.size()));
-  // One that is not believed would leave its owner and permissions to the new one.
-  if (const auto older = open_for_reading(path); older && !check_own(*older, path)) ::unlink(path.c_str());
+  remove_unless_own(path);
   AtomicFile file = TRY(AtomicFile::create(path));
   TRY(file.write(std::as_bytes(std::span(&header, 1))));
   TRY(file.write(payload));

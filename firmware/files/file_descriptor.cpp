@@ -111,6 +111,10 @@ hal::Result<void> check_own(const FileDescriptor& file, const std::string& path)
   return {};
 }
 
+void remove_unless_own(const std::string& path) {
+  if (const auto older = open_for_reading(path); older && !check_own(*older, path)) ::unlink(path.c_str());
+}
+
 std::optional<std::uint64_t> regular_size(const FileDescriptor& file) noexcept {
   struct stat status {};
   if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;

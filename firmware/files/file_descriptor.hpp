@@ -51,6 +51,8 @@ class FileDescriptor {
 /// Whether nobody but this user and root can have written it, for what is believed without being made again. Error
 /// stale, which says who else.
 [[nodiscard]] hal::Result<void> check_own(const FileDescriptor& file, const std::string& path);
+/// Takes away what check_own() does not believe, whose owner and permissions a file in its place would inherit.
+void remove_unless_own(const std::string& path);
 
 /// Size in bytes of a regular file; nothing for a pipe or a device, whose end is only known once it is reached.
 [[nodiscard]] std::optional<std::uint64_t> regular_size(const FileDescriptor& file) noexcept;

@@ -302,6 +302,7 @@ Result<void> store_points(const std::string& folder, const Sweep& sweep) {
   const Figures figures = figures_of(sweep);
   for (const auto& [key, value] : figures.members()) file.add(key, value);
   const std::string text = json_text(file);
+  remove_unless_own(points_path(folder));
   return write_file_atomically(points_path(folder), std::as_bytes(std::span(text)));
 }
 

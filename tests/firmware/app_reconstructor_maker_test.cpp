@@ -93,5 +93,13 @@ TEST_CASE("a stored factor with right checksums and wrong values is made again, 
       CHECK(frame(FactorOrigin::replaced) == right);
       CHECK(frame(kept) == right);
     }
+    // A sound one of another eye.
+    const recon::Response other = tests::random_response(random, 30, tests::Picture{6, 6}, 0.5);
+    recon::Plan same_rho = plan;
+    same_rho.rho = key.rank > 0 ? 0.0 : key.rho;
+    const auto of_other = recon::Reconstructor::create(other, objective, same_rho);
+    REQUIRE(of_other);
+    REQUIRE(store_factor(cache, key, of_other->factor()));
+    CHECK(frame(FactorOrigin::replaced) == right);
   }
 }

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <string>
@@ -69,6 +70,18 @@ TEST_CASE("points that a busy machine measured are not trusted, and the sentence
   compueye::test::check_error(load_points(folder.path(), key_of(sweep)), ErrorCode::stale, points_path(folder.path()),
                               {"0.64", "0.95"});
   sweep.processor_share = trusted_processor_share;
+  REQUIRE(store_points(folder.path(), sweep).has_value());
+  CHECK(load_points(folder.path(), key_of(sweep)).has_value());
+}
+
+TEST_CASE("points that somebody else can write are not believed, and new ones in their place are") {
+  const TemporaryFolder folder;
+  const Sweep sweep = two_points();
+  REQUIRE(store_points(folder.path(), sweep).has_value());
+  using std::filesystem::perms;
+  std::filesystem::permissions(points_path(folder.path()), perms::others_write, std::filesystem::perm_options::add);
+  compueye::test::check_error(load_points(folder.path(), key_of(sweep)), ErrorCode::stale, points_path(folder.path()),
+                              {});
   REQUIRE(store_points(folder.path(), sweep).has_value());
   CHECK(load_points(folder.path(), key_of(sweep)).has_value());
 }
