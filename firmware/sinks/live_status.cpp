@@ -30,12 +30,14 @@ std::string_view StatusLine::print(std::int64_t now_ns, std::span<char> room) no
     counted_ns_ = now_ns;
     counted_ = delivered;
   }
+  if (delivered == 0 || room.empty()) return {};
+  char rate[32] = "-";
+  if (rate_hz_ >= 0.0) std::snprintf(rate, sizeof rate, "%.1f", rate_hz_);
   const std::uint64_t gaps = status_->gaps();
-  const int wanted = std::snprintf(room.data(), room.size(),
-                                   "%.1f/s, age %.0f ms, %" PRIu64 " dropped in %" PRIu64 " gap%s, %" PRIu64 " late",
-                                   rate_hz_, static_cast<double>(status_->age_ns()) * 1e-6, status_->dropped(), gaps,
-                                   gaps == 1 ? "" : "s", status_->late());
-  if (wanted < 0 || room.empty()) return {};
+  const int wanted = std::snprintf(
+      room.data(), room.size(), "%s/s, age %.0f ms, %" PRIu64 " dropped in %" PRIu64 " gap%s, %" PRIu64 " late", rate,
+      static_cast<double>(status_->age_ns()) * 1e-6, status_->dropped(), gaps, gaps == 1 ? "" : "s", status_->late());
+  if (wanted < 0) return {};
   return {room.data(), std::min(static_cast<std::size_t>(wanted), room.size() - 1)};
 }
 

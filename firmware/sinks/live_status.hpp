@@ -34,13 +34,14 @@ class StatusLine {
  public:
   explicit StatusLine(const LiveStatus& status) noexcept : status_(&status) {}
 
-  /// "24.8/s, age 34 ms, 2 dropped in 1 gap, 0 late": into `room`, cut to it. Does not allocate.
+  /// "24.8/s, age 34 ms, 2 dropped in 1 gap, 0 late": into `room`, cut to it; "-/s" within the first second, nothing
+  /// before the first frame. Does not allocate.
   [[nodiscard]] std::string_view print(std::int64_t now_ns, std::span<char> room) noexcept;
 
  private:
   const LiveStatus* status_;
   bool begun_ = false;
-  double rate_hz_ = 0.0;
+  double rate_hz_ = -1.0;  ///< negative: not known yet
   std::int64_t counted_ns_ = 0;
   std::uint64_t counted_ = 0;
 };

@@ -217,7 +217,7 @@ TEST_CASE("the line below the picture says how the run goes, within the terminal
   status.published(4, 34'000'000, false);
   StatusLine line(status);
   std::array<char, 160> room{};
-  CHECK(line.print(0, room) == "0.0/s, age 34 ms, 2 dropped in 1 gap, 1 late");
+  CHECK(line.print(0, room) == "-/s, age 34 ms, 2 dropped in 1 gap, 1 late");
   for (std::uint64_t n = 5; n < 25; ++n) status.published(n, 1'000'000, false);
   CHECK(line.print(2'000'000'000, room) == "10.0/s, age 1 ms, 2 dropped in 1 gap, 1 late");
   CHECK(line.print(0, std::span(room).first(5)).size() == 4);

@@ -257,7 +257,7 @@ std::function<void()> BoardRun::how_far() {
     const std::string_view text = line.print(now_ns, room);
     if (now_ns < due_ns) return;
     due_ns = now_ns + every_ns;
-    session_.say(fmt::format("{} frames, {}{}", status.delivered(), text,
+    session_.say(fmt::format("{} frames{}{}{}", status.delivered(), text.empty() ? "" : ", ", text,
                              source_->source().recovering() ? "; getting the eye back" : ""));
   };
 }
