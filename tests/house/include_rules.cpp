@@ -59,8 +59,9 @@ constexpr std::array<FolderRule, 26> rules{{
     {"firmware/eye",
      "hal recon recon/core calib sim drivers/protocol drivers/device drivers/transport firmware/files "
      "firmware/pipeline firmware/text firmware/eye",
-     "toml++ fmt", false, none, false,
-     "firmware/eye: hal, recon, calib, sim, drivers, firmware/files, text and pipeline (its correction), toml++, fmt"},
+     "toml++ fmt xxhash", false, none, false,
+     "firmware/eye: hal, recon, calib, sim, drivers, firmware/files, text and pipeline (its correction), toml++, fmt, "
+     "xxhash"},
     {"firmware/operating_points",
      "hal recon recon/core firmware/eye firmware/files firmware/pipeline firmware/text firmware/operating_points",
      "fmt nlohmann-json xxhash", false, none, false,

@@ -8,6 +8,7 @@
 
 #include "firmware/eye/settings/setting.hpp"
 #include "firmware/text/words.hpp"
+#include "xxhash.h"
 
 namespace compueye::firmware {
 namespace {
@@ -15,11 +16,8 @@ namespace {
 constexpr std::string_view prefix = "board.";
 constexpr std::string_view left_out = "left out";
 
-/// FNV-1a: Fowler, Noll, Vo; http://www.isthe.com/chongo/tech/comp/fnv/
 std::uint64_t hash_of(std::string_view text) {
-  std::uint64_t hash = 0xCBF29CE484222325U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
-  return hash;
+  return XXH3_64bits(text.data(), text.size());
 }
 
 /// Whole, however short quoted() is: a long list by its length and hash.
