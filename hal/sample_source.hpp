@@ -55,6 +55,9 @@ class SampleSource {
   /// this ends by itself, in a time that the source bounds: with a frame, or with a read() that says `disconnected`.
   [[nodiscard]] bool recovering() const noexcept { return do_recovering(); }
 
+  /// How many things went wrong so far, faults_in(counters()); from any thread, and as of the last read().
+  [[nodiscard]] std::uint64_t faults() const noexcept { return do_faults(); }
+
   /// What else this kind of source counts, since the last start(): what went wrong and was mended. Always the same
   /// rows in the same order, none where there is nothing to tell. Not for the frame path: it allocates.
   [[nodiscard]] std::vector<Counter> counters() const { return do_counters(); }
@@ -66,6 +69,7 @@ class SampleSource {
   virtual void do_stop() noexcept = 0;
   [[nodiscard]] virtual FrameAccount do_account() const noexcept = 0;
   [[nodiscard]] virtual bool do_recovering() const noexcept { return false; }
+  [[nodiscard]] virtual std::uint64_t do_faults() const noexcept { return 0; }
   [[nodiscard]] virtual std::vector<Counter> do_counters() const { return {}; }
 
   bool started_ = false;

@@ -81,10 +81,21 @@ hal::Result<void> DeviceSource::do_start() {
   machine_.run_with(settings_.recovery_limit_ns);
   recovering_.store(false, std::memory_order_relaxed);
   run_config_id_ = configuration_.config_id;
+  count_faults();
   return reached;
 }
 
 hal::Result<hal::SampleBlock> DeviceSource::do_read(std::int64_t deadline_ns) {
+  auto block = read_or_recover(deadline_ns);
+  count_faults();
+  return block;
+}
+
+void DeviceSource::count_faults() noexcept {
+  faults_.store(failures().faults(), std::memory_order_relaxed);
+}
+
+hal::Result<hal::SampleBlock> DeviceSource::read_or_recover(std::int64_t deadline_ns) {
   int late_reads = 0;
   for (int looks = 1;; ++looks) {
     if (looks % most_looks == 0) clock_.sleep_until_ns(std::min(clock_.now_ns() + look_pause_ns, deadline_ns));
@@ -204,6 +215,7 @@ void DeviceSource::do_stop() noexcept {
   const hal::DropReason reason = reading ? hal::DropReason::stopped : lost_as_;
   static_cast<void>(end_stream(reason, clock_.now_ns() + 2 * protocol::control_deadline_ns));
   if (extent_.is_open()) close_stream(extent_.close(clock_.now_ns()), reason);
+  count_faults();
 }
 
 /// Stops the device and asks it how many frames there were. False: `until_ns` came before its answer.

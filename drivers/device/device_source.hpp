@@ -75,7 +75,10 @@ class DeviceSource final : public hal::SampleSource {
   void do_stop() noexcept override;
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override;
   [[nodiscard]] bool do_recovering() const noexcept override { return recovering_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t do_faults() const noexcept override { return faults_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::vector<hal::Counter> do_counters() const override { return failures().counters(); }
+  [[nodiscard]] hal::Result<hal::SampleBlock> read_or_recover(std::int64_t deadline_ns);
+  void count_faults() noexcept;
   [[nodiscard]] std::optional<hal::SampleBlock> read_stream(std::int64_t deadline_ns);
   void saw_frame(hal::SampleBlock& block) noexcept;
   void fail_quiet();
@@ -121,6 +124,7 @@ class DeviceSource final : public hal::SampleSource {
   DeviceRequests requests_;
   DeviceMachine machine_;
   std::atomic<bool> recovering_{false};
+  std::atomic<std::uint64_t> faults_{0};
   FailureCounters failures_;
   hal::Error last_error_;
   std::int64_t gave_up_after_ns_ = 0;

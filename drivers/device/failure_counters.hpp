@@ -44,7 +44,7 @@ namespace compueye::device {
   ROW(bad_code, "codes beyond the depth, made invalid")                                           \
   ROW(wrong_number, "samples of a frame that the time since START had no room for")               \
   ROW(doubtful_time, "frames whose time is not to be trusted")                                    \
-  /* What was done */                                                                             \
+  /* What was done: from here on no faults */                                                     \
   ROW(restart, "the stream was reset")                                                            \
   ROW(bus_reset, "the device was closed and opened again")                                        \
   ROW(gave_up, "recovery was given up")
@@ -57,7 +57,7 @@ enum class Failure : std::uint8_t {
 
 /// In the order of Failure; their counts are 0.
 inline constexpr std::array failure_rows{
-#define COMPUEYE_FAILURE(name, meaning) hal::Counter{#name, meaning},
+#define COMPUEYE_FAILURE(name, meaning) hal::Counter{#name, meaning, 0, Failure::name < Failure::restart},
     COMPUEYE_FAILURES(COMPUEYE_FAILURE)
 #undef COMPUEYE_FAILURE
 };
@@ -68,6 +68,13 @@ class FailureCounters {
  public:
   std::uint64_t& operator[](Failure failure) noexcept { return counts_[static_cast<std::size_t>(failure)]; }
   std::uint64_t operator[](Failure failure) const noexcept { return counts_[static_cast<std::size_t>(failure)]; }
+
+  /// All of those that are no deeds.
+  [[nodiscard]] std::uint64_t faults() const noexcept {
+    std::uint64_t faults = 0;
+    for (std::size_t k = 0; k < counts_.size(); ++k) faults += failure_rows[k].fault ? counts_[k] : 0;
+    return faults;
+  }
 
   /// All of them, with their names.
   [[nodiscard]] std::vector<hal::Counter> counters() const {

@@ -22,6 +22,7 @@ hal::Result<void> ReplaySource::do_start() {
   recording_.rewind();
   next_.reset();
   account_ = {};
+  faults_ = 0;
   started_ns_ = clock_.now_ns();
   return {};
 }
@@ -29,6 +30,7 @@ hal::Result<void> ReplaySource::do_start() {
 hal::Result<hal::SampleBlock> ReplaySource::do_read(std::int64_t deadline_ns) {
   if (!next_) {
     auto frame = recording_.next();
+    faults_.store(recording_.damage().stretches, std::memory_order_relaxed);
     if (!frame) {
       if (frame.error().code == hal::ErrorCode::end_of_stream) account_ = recording_.account();
       return tl::unexpected(std::move(frame.error()));
@@ -54,10 +56,10 @@ hal::Result<hal::SampleBlock> ReplaySource::do_read(std::int64_t deadline_ns) {
 std::vector<hal::Counter> ReplaySource::do_counters() const {
   const RecordingDamage& damage = recording_.damage();
   return {{"damaged_stretches", "pieces of the file between whole blocks that are none", damage.stretches},
-          {"damaged_bytes", "bytes in them", damage.bytes},
-          {"damaged_frames", "frames lost in them", damage.blocks},
-          {"torn_bytes", "of a last block that was never finished", damage.torn_bytes},
-          {"unrecorded_frames", "frames that the recording was too slow for", recording_.unrecorded()}};
+          {"damaged_bytes", "bytes in them", damage.bytes, false},
+          {"damaged_frames", "frames lost in them", damage.blocks, false},
+          {"torn_bytes", "of a last block that was never finished", damage.torn_bytes, false},
+          {"unrecorded_frames", "frames that the recording was too slow for", recording_.unrecorded(), false}};
 }
 
 }  // namespace compueye::recording

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -38,6 +39,7 @@ class ReplaySource final : public hal::SampleSource {
   hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override;
   void do_stop() noexcept override { next_.reset(); }
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override { return account_; }
+  [[nodiscard]] std::uint64_t do_faults() const noexcept override { return faults_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::vector<hal::Counter> do_counters() const override;
 
   RecordingReader recording_;
@@ -47,6 +49,7 @@ class ReplaySource final : public hal::SampleSource {
   std::int64_t started_ns_ = 0;
   std::optional<RecordedFrame> next_;  // read, and not yet due
   hal::FrameAccount account_;
+  std::atomic<std::uint64_t> faults_{0};
 };
 
 }  // namespace compueye::recording

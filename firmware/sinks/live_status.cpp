@@ -20,23 +20,44 @@ std::uint64_t LiveStatus::dropped() const noexcept {
   return numbered > published ? numbered - published : 0;
 }
 
-std::string_view StatusLine::print(std::int64_t now_ns, std::span<char> room) noexcept {
+void LiveStatus::source_is(std::uint64_t faults, bool recovering) noexcept {
+  faults_.store(faults, std::memory_order_relaxed);
+  recovering_.store(recovering, std::memory_order_relaxed);
+}
+
+void StatusLine::count(std::uint64_t delivered, std::int64_t now_ns) noexcept {
   constexpr std::int64_t window_ns = 1'000'000'000;
-  const std::uint64_t delivered = status_->delivered();
+  if (begun_ && delivered != heard_) frame_took_ns_ = now_ns - heard_ns_;
+  if (!begun_ || delivered != heard_) heard_ns_ = now_ns;
+  heard_ = delivered;
   const std::int64_t since_ns = now_ns - counted_ns_;
-  if (!begun_ || since_ns >= window_ns) {
-    if (begun_) rate_hz_ = static_cast<double>(delivered - counted_) * 1e9 / static_cast<double>(since_ns);
-    begun_ = true;
-    counted_ns_ = now_ns;
-    counted_ = delivered;
+  if (begun_ && since_ns < window_ns) return;
+  if (begun_) rate_hz_ = static_cast<double>(delivered - counted_) * 1e9 / static_cast<double>(since_ns);
+  begun_ = true;
+  counted_ns_ = now_ns;
+  counted_ = delivered;
+}
+
+std::string_view StatusLine::print(std::int64_t now_ns, std::span<char> room) noexcept {
+  constexpr std::int64_t silence_ns = 1'000'000'000;
+  const std::uint64_t delivered = status_->delivered();
+  count(delivered, now_ns);
+  const std::int64_t silent_ns = now_ns - heard_ns_;
+  const bool silent = silent_ns >= std::max(silence_ns, 3 * frame_took_ns_), recovering = status_->recovering();
+  if (room.empty() || (delivered == 0 && !silent && !recovering)) return {};
+  char now[96];
+  if (silent || recovering) {
+    std::snprintf(now, sizeof now, "%ssilent %.1f s", recovering ? "recovering, " : "",
+                  static_cast<double>(silent_ns) * 1e-9);
+  } else {
+    char rate[32] = "-";
+    if (rate_hz_ >= 0.0) std::snprintf(rate, sizeof rate, "%.1f", rate_hz_);
+    std::snprintf(now, sizeof now, "%s/s, age %.0f ms", rate, static_cast<double>(status_->age_ns()) * 1e-6);
   }
-  if (delivered == 0 || room.empty()) return {};
-  char rate[32] = "-";
-  if (rate_hz_ >= 0.0) std::snprintf(rate, sizeof rate, "%.1f", rate_hz_);
-  const std::uint64_t gaps = status_->gaps();
+  const std::uint64_t gaps = status_->gaps(), faults = status_->faults();
   const int wanted = std::snprintf(
-      room.data(), room.size(), "%s/s, age %.0f ms, %" PRIu64 " dropped in %" PRIu64 " gap%s, %" PRIu64 " late", rate,
-      static_cast<double>(status_->age_ns()) * 1e-6, status_->dropped(), gaps, gaps == 1 ? "" : "s", status_->late());
+      room.data(), room.size(), "%s, %" PRIu64 " dropped in %" PRIu64 " gap%s, %" PRIu64 " late, %" PRIu64 " fault%s",
+      now, status_->dropped(), gaps, gaps == 1 ? "" : "s", status_->late(), faults, faults == 1 ? "" : "s");
   if (wanted < 0) return {};
   return {room.data(), std::min(static_cast<std::size_t>(wanted), room.size() - 1)};
 }

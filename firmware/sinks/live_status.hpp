@@ -7,12 +7,18 @@
 
 namespace compueye::firmware {
 
-/// How a run goes: told by its publish thread, read by any. Numbers of one frame may be mixed with those of the next.
+/// How a run goes: told by its publish thread and by whoever watches its source, read by any. Numbers of one frame may
+/// be mixed with those of the next.
 class LiveStatus {
  public:
   /// A frame was published; `frame` is its number, from 0, `age_ns` from the start of its exposure.
   void published(std::uint64_t frame, std::int64_t age_ns, bool late) noexcept;
 
+  /// SampleSource::faults() and recovering().
+  void source_is(std::uint64_t faults, bool recovering) noexcept;
+
+  [[nodiscard]] std::uint64_t faults() const noexcept { return faults_.load(std::memory_order_relaxed); }
+  [[nodiscard]] bool recovering() const noexcept { return recovering_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t delivered() const noexcept { return delivered_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t late() const noexcept { return late_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::int64_t age_ns() const noexcept { return age_ns_.load(std::memory_order_relaxed); }
@@ -27,6 +33,8 @@ class LiveStatus {
   std::atomic<std::uint64_t> late_{0};
   std::atomic<std::uint64_t> gaps_{0};
   std::atomic<std::int64_t> age_ns_{0};
+  std::atomic<std::uint64_t> faults_{0};
+  std::atomic<bool> recovering_{false};
 };
 
 /// A LiveStatus as a line of text, with the rate since about a second ago. One a reader.
@@ -34,16 +42,22 @@ class StatusLine {
  public:
   explicit StatusLine(const LiveStatus& status) noexcept : status_(&status) {}
 
-  /// "24.8/s, age 34 ms, 2 dropped in 1 gap, 0 late": into `room`, cut to it; "-/s" within the first second, nothing
-  /// before the first frame. Does not allocate.
+  /// "24.8/s, age 34 ms, 2 dropped in 1 gap, 0 late, 0 faults": into `room`, cut to it; "-/s" within the first second.
+  /// While no frame comes "recovering, silent 1.2 s" instead of rate and age: from a second on, and from three times
+  /// what the frame before took. Nothing before the first frame as long as that is no silence. Does not allocate.
   [[nodiscard]] std::string_view print(std::int64_t now_ns, std::span<char> room) noexcept;
 
  private:
+  void count(std::uint64_t delivered, std::int64_t now_ns) noexcept;
+
   const LiveStatus* status_;
   bool begun_ = false;
   double rate_hz_ = -1.0;  ///< negative: not known yet
   std::int64_t counted_ns_ = 0;
   std::uint64_t counted_ = 0;
+  std::uint64_t heard_ = 0;  ///< frames until heard_ns_
+  std::int64_t heard_ns_ = 0;
+  std::int64_t frame_took_ns_ = 0;
 };
 
 }  // namespace compueye::firmware

@@ -121,7 +121,8 @@ hal::Result<void> TerminalSink::open(hal::FrameFormat format) {
   lay_out(size_now());
   used_ = sent_ = 0;
   shown_ = passed_over_ = 0;
-  anything_drawn_ = given_back_ = anew_ = false;
+  last_ns_ = clock_->now_ns();
+  anything_drawn_ = line_begun_ = given_back_ = anew_ = false;
   put(hide_cursor);
   auto ok = send();
   open_ = ok.has_value();
@@ -199,13 +200,17 @@ void TerminalSink::put_cells(const hal::Frame& frame, int line) noexcept {
   }
 }
 
-void TerminalSink::put_status(std::uint64_t frame, std::int64_t now_ns) noexcept {
+void TerminalSink::put_status(std::int64_t now_ns) noexcept {
   // The last column stays free: a character there makes some terminals wrap.
   char text[longest_status];
   const auto room = static_cast<std::size_t>(std::min(size_.columns, static_cast<int>(sizeof text)));
   const std::size_t begin = used_;
-  put("frame ");
-  put_number(frame);
+  if (anything_drawn_) {
+    put("frame ");
+    put_number(frame_);
+  } else {
+    put("no frame yet");
+  }
   const std::size_t taken = used_ - begin;
   if (has_status_ && taken + 3 < room) {
     put("  ");
@@ -220,7 +225,10 @@ void TerminalSink::draw(const hal::Frame& frame, std::int64_t now_ns) noexcept {
     put("\r\x1b[");
     put_number(static_cast<std::uint64_t>(lines));
     put("A");
+  } else if (line_begun_) {
+    put("\r");
   }
+  anything_drawn_ = true;
   const bool half_blocks = options_.look.half_blocks && options_.look.colours != TerminalColours::none;
   for (int line = 0; line < lines; ++line) {
     half_blocks ? put_half_blocks(frame, line) : put_cells(frame, line);
@@ -228,7 +236,8 @@ void TerminalSink::draw(const hal::Frame& frame, std::int64_t now_ns) noexcept {
     put(clear_to_end_of_line);
     put("\n");
   }
-  put_status(frame.frame, now_ns);
+  frame_ = frame.frame;
+  put_status(now_ns);
 }
 
 hal::Result<void> TerminalSink::write(const hal::Frame& frame) {
@@ -256,9 +265,20 @@ hal::Result<void> TerminalSink::write(const hal::Frame& frame) {
   }
   draw(frame, now);
   last_ns_ = now;
-  anything_drawn_ = true;
   ++shown_;
   return send();
+}
+
+void TerminalSink::tell() noexcept {
+  constexpr std::int64_t quiet_ns = 500'000'000;
+  const std::lock_guard lock(mutex_);
+  const std::int64_t now = clock_->now_ns();
+  if (!open_ || given_back_ || anew_ || now - last_ns_ < quiet_ns || !send() || sent_ < used_) return;
+  if (size_now() != size_) return;
+  put("\r");
+  put_status(now);
+  line_begun_ = !anything_drawn_;
+  static_cast<void>(send());
 }
 
 void TerminalSink::give_back() noexcept {
@@ -284,7 +304,7 @@ hal::Result<void> TerminalSink::close() {
   open_ = false;
   put(plain);
   put(show_cursor);
-  if (anything_drawn_) put("\n");
+  if (anything_drawn_ || line_begun_) put("\n");
   // Once more, for a terminal that is only slow.
   int tries = 2;
   const int why = out_.write(std::string_view(buffer_).substr(sent_, used_ - sent_), [&] { return tries-- > 0; });

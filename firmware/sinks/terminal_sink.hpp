@@ -64,6 +64,8 @@ class TerminalSink final : public hal::FrameSink {
   [[nodiscard]] hal::Result<void> close() override;
 
   // From any thread.
+  /// Draws the line below the picture anew when no frame has done so for a while.
+  void tell() noexcept;
   /// Cursor and colours as they were, and nothing more is drawn: before the process stops or is left.
   void give_back() noexcept;
   /// The process goes on: draws anew from the cursor on.
@@ -94,7 +96,7 @@ class TerminalSink final : public hal::FrameSink {
   [[nodiscard]] int code_of(float brightness) const noexcept;
   void put_half_blocks(const hal::Frame& frame, int line) noexcept;
   void put_cells(const hal::Frame& frame, int line) noexcept;
-  void put_status(std::uint64_t frame, std::int64_t now_ns) noexcept;
+  void put_status(std::int64_t now_ns) noexcept;
   [[nodiscard]] hal::Result<void> send() noexcept;
 
   const hal::Clock* clock_;
@@ -110,6 +112,8 @@ class TerminalSink final : public hal::FrameSink {
   bool given_back_ = false;
   bool anew_ = false;
   bool anything_drawn_ = false;
+  bool line_begun_ = false;  // that of the first frame, before it
+  std::uint64_t frame_ = 0;  // the last one drawn
   std::int64_t last_ns_ = 0;
   std::uint64_t shown_ = 0;
   std::uint64_t passed_over_ = 0;

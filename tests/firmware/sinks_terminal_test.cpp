@@ -217,9 +217,10 @@ TEST_CASE("the line below the picture says how the run goes, within the terminal
   status.published(4, 34'000'000, false);
   StatusLine line(status);
   std::array<char, 160> room{};
-  CHECK(line.print(0, room) == "-/s, age 34 ms, 2 dropped in 1 gap, 1 late");
+  CHECK(line.print(0, room) == "-/s, age 34 ms, 2 dropped in 1 gap, 1 late, 0 faults");
   for (std::uint64_t n = 5; n < 25; ++n) status.published(n, 1'000'000, false);
-  CHECK(line.print(2'000'000'000, room) == "10.0/s, age 1 ms, 2 dropped in 1 gap, 1 late");
+  status.source_is(1, false);
+  CHECK(line.print(2'000'000'000, room) == "10.0/s, age 1 ms, 2 dropped in 1 gap, 1 late, 1 fault");
   CHECK(line.print(0, std::span(room).first(5)).size() == 4);
 
   const Pipe pipe;
@@ -236,6 +237,62 @@ TEST_CASE("the line below the picture says how the run goes, within the terminal
     CHECK(text.find("\x1b[K", begin) - begin < static_cast<std::size_t>(columns));
     CHECK((text.find("dropped", begin) != std::string::npos) == (columns == 100));
   }
+}
+
+TEST_CASE("the line says that no frame comes, and for how long, when that is longer than usual") {
+  constexpr std::int64_t ms = 1'000'000;
+  LiveStatus status;
+  StatusLine line(status);
+  std::array<char, 160> room{};
+  CHECK(line.print(0, room).empty());
+  CHECK(line.print(999 * ms, room).empty());
+  CHECK(line.print(1000 * ms, room) == "silent 1.0 s, 0 dropped in 0 gaps, 0 late, 0 faults");
+  status.published(0, ms, false);
+  CHECK(line.print(1100 * ms, room).starts_with("0."));
+  // Frames that take two seconds are late after six.
+  status.published(1, ms, false);
+  CHECK(line.print(3100 * ms, room).starts_with("1.0/s, age 1 ms, "));
+  CHECK(line.print(9099 * ms, room).starts_with("0.0/s, "));
+  CHECK(line.print(9100 * ms, room) == "silent 6.0 s, 0 dropped in 0 gaps, 0 late, 0 faults");
+  status.published(2, ms, false);
+  CHECK(line.print(9200 * ms, room).find("silent") == std::string::npos);
+  status.source_is(2, true);
+  CHECK(line.print(9300 * ms, room) == "recovering, silent 0.1 s, 0 dropped in 0 gaps, 0 late, 2 faults");
+}
+
+TEST_CASE("the line below the picture goes on while no frame comes") {
+  const Pipe pipe;
+  hal::VirtualClock clock;
+  LiveStatus status;
+  TerminalOptions options = small_terminal(pipe);
+  options.columns = 100;
+  TerminalSink sink(clock, options, &status);
+  sink.tell();
+  CHECK(pipe.take().empty());
+  REQUIRE(sink.open({2, 2}).has_value());
+  static_cast<void>(pipe.take());
+  clock.advance(600'000'000);
+  sink.tell();
+  CHECK(pipe.take() == "\rno frame yet  \x1b[K");
+  clock.advance(1'000'000'000);
+  sink.tell();
+  CHECK(pipe.take() == "\rno frame yet  silent 1.0 s, 0 dropped in 0 gaps, 0 late, 0 faults\x1b[K");
+  const std::vector<float> pixels(4, 0.5F);
+  status.published(7, 0, false);
+  REQUIRE(sink.write(frame_of(pixels, {2, 2}, 7)).has_value());
+  CHECK(pipe.take().starts_with("\r\x1b[38;2;128"));
+  // A frame has told it just now.
+  clock.advance(499'999'999);
+  sink.tell();
+  CHECK(pipe.take().empty());
+  clock.advance(3'000'000'000);
+  status.source_is(3, true);
+  sink.tell();
+  CHECK(pipe.take() == "\rframe 7  recovering, silent 3.5 s, 7 dropped in 1 gap, 0 late, 3 faults\x1b[K");
+  sink.give_back();
+  static_cast<void>(pipe.take());
+  sink.tell();
+  CHECK(pipe.take().empty());
 }
 
 TEST_CASE("a terminal without UTF-8 or without colours gets what it can show") {

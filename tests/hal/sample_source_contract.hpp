@@ -174,6 +174,7 @@ class ContractTest {
     start();
     for (int i = 0; i < 3; ++i) next();
     const std::vector<Counter> after = source_->counters();
+    expect(source_->faults() == faults_in(after), "faults() is not the number of faults among the counters");
     source_->stop();
     expect(std::equal(before.begin(), before.end(), after.begin(), after.end(),
                       [](const Counter& a, const Counter& b) { return a.name == b.name; }),

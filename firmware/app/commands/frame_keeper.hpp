@@ -36,6 +36,8 @@ class FrameKeeper final : public FrameObserver {
   /// So far.
   [[nodiscard]] std::uint64_t delivered() const noexcept { return status_.delivered(); }
   [[nodiscard]] const LiveStatus& status() const noexcept { return status_; }
+  /// LiveStatus::source_is().
+  void source_is(std::uint64_t faults, bool recovering) noexcept { status_.source_is(faults, recovering); }
 
  private:
   [[nodiscard]] std::span<float> slot(std::size_t index) noexcept;

@@ -28,7 +28,6 @@
 #include "firmware/pipeline/pipeline.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "firmware/sinks/live_status.hpp"
-#include "firmware/sinks/terminal_sink.hpp"
 #include "hal/try.hpp"
 #include "sim/scene_truth.hpp"
 
@@ -77,8 +76,8 @@ class BoardRun {
   [[nodiscard]] double period_ms() const { return 1e3 / board_.source.frame_rate_hz; }
   Result<void> fit();
   Result<void> run_pipeline();
-  Result<void> run_with(FrameSolver& solver, hal::FrameSink& sink, FrameObserver& observer);
-  [[nodiscard]] std::function<void()> how_far();
+  Result<void> run_with(FrameSolver& solver, const RunSinks& sinks, FrameObserver& observer);
+  [[nodiscard]] std::function<void()> how_far(TerminalSink* screen);
   Result<void> compare();
   Result<void> measure_quality();
   Result<void> write_sheet();
@@ -208,23 +207,24 @@ Result<void> BoardRun::run_pipeline() {
   const ScreenLease lease(session_);
   if (ladder_.rungs.empty()) {
     ReconstructorSolver solver(eye().reconstructor());
-    return run_with(solver, *sinks, *keeper_);
+    return run_with(solver, sinks, *keeper_);
   }
   LadderSolver solver(ladder_);
   DeadlineWatch watch(solver, session_.clock(), *keeper_);
-  auto done = run_with(solver, *sinks, watch);
+  auto done = run_with(solver, sinks, watch);
   report_.ladder->frames = watch.frames();
   report_.ladder->steps_down = watch.rule().steps_down();
   report_.ladder->steps_up = watch.rule().steps_up();
   return done;
 }
 
-Result<void> BoardRun::run_with(FrameSolver& solver, hal::FrameSink& sink, FrameObserver& observer) {
+Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, FrameObserver& observer) {
   auto pipeline =
-      TRY(Pipeline::create(pipeline_settings(), source_->source(), solver, sink, session_.clock(), &observer));
+      TRY(Pipeline::create(pipeline_settings(), source_->source(), solver, *sinks.all, session_.clock(), &observer));
   std::optional<RunWatch> watch;
-  watch.emplace([this, tell = how_far(), told = false]() mutable {
-    if (tell) tell();
+  watch.emplace([this, tell = how_far(sinks.screen), told = false]() mutable {
+    keeper_->source_is(source_->source().faults(), source_->source().recovering());
+    tell();
     const std::string failure = told ? std::string() : source_->failure();
     if (failure.empty()) return;
     told = true;
@@ -241,14 +241,14 @@ Result<void> BoardRun::run_with(FrameSolver& solver, hal::FrameSink& sink, Frame
 }
 
 /// On a terminal a line that is redrawn; elsewhere how the run goes, every few seconds.
-std::function<void()> BoardRun::how_far() {
+std::function<void()> BoardRun::how_far(TerminalSink* screen) {
   constexpr std::int64_t every_ns = 5'000'000'000;
-  if (shows_pictures(options_)) return {};
+  if (screen != nullptr) return [screen] { screen->tell(); };
   const LiveStatus& status = keeper_->status();
   if (::isatty(STDERR_FILENO) == 1 && terminal_can_draw()) {
     return [this, &status, progress = session_.progress()] {
-      progress(source_->source().recovering() ? "frames, getting the eye back" : "frames",
-               static_cast<double>(status.delivered()), static_cast<double>(frames()));
+      progress(status.recovering() ? "frames, getting the eye back" : "frames", static_cast<double>(status.delivered()),
+               static_cast<double>(frames()));
     };
   }
   return [this, &status, line = StatusLine(status), due_ns = session_.clock().now_ns() + every_ns]() mutable {
@@ -257,8 +257,7 @@ std::function<void()> BoardRun::how_far() {
     const std::string_view text = line.print(now_ns, room);
     if (now_ns < due_ns) return;
     due_ns = now_ns + every_ns;
-    session_.say(fmt::format("{} frames{}{}{}", status.delivered(), text.empty() ? "" : ", ", text,
-                             source_->source().recovering() ? "; getting the eye back" : ""));
+    session_.say(fmt::format("{} frames{}{}", status.delivered(), text.empty() ? "" : ", ", text));
   };
 }
 

@@ -10,7 +10,6 @@
 #include "firmware/sinks/contact_sheet.hpp"
 #include "firmware/sinks/frame_list_sink.hpp"
 #include "firmware/sinks/sink_list.hpp"
-#include "firmware/sinks/terminal_sink.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -73,8 +72,8 @@ bool shows_pictures(const RunOptions& options) {
   return !options.json && options.table.empty() && terminal;
 }
 
-std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, Session& session, const LiveStatus& status,
-                                           std::vector<std::string>& files) {
+RunSinks make_sinks(const RunOptions& options, Session& session, const LiveStatus& status,
+                    std::vector<std::string>& files) {
   auto sinks = std::make_unique<FanOutSink>();
   const SinkWanted wanted{options.out, session.clock(), &status};
   const SinkRow& format = *find_sink(options.output_format());
@@ -84,13 +83,17 @@ std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, Session& s
     files.push_back(options.out + "/" + PictureFolder::frame_list);
     sinks->add(std::make_unique<FrameListSink>(files.back()));
   }
-  if (!shows_pictures(options)) return sinks;
-  auto screen = find_sink("terminal")->make(wanted);
-  if (auto* const user = dynamic_cast<TerminalSink*>(screen.get())) {
-    session.guard_screen({[user] { user->give_back(); }, [user] { user->take_again(); }});
+  if (!shows_pictures(options)) {
+    if (options.show.value_or(false)) {
+      session.note("--show: the terminal cannot show pictures, because TERM is \"dumb\" or not set");
+    }
+    return {std::move(sinks)};
   }
+  auto screen = find_sink("terminal")->make(wanted);
+  auto* const user = dynamic_cast<TerminalSink*>(screen.get());
+  session.guard_screen({[user] { user->give_back(); }, [user] { user->take_again(); }});
   sinks->add(std::move(screen));
-  return sinks;
+  return {std::move(sinks), user};
 }
 
 hal::Result<void> write_run_sheet(const std::string& path, const Figures& run, const hal::Image& truth,

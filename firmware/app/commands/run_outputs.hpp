@@ -9,6 +9,7 @@
 #include "firmware/app/session.hpp"
 #include "firmware/sinks/live_status.hpp"
 #include "firmware/sinks/picture_folder.hpp"
+#include "firmware/sinks/terminal_sink.hpp"
 #include "firmware/text/figures.hpp"
 #include "hal/frame_sink.hpp"
 #include "hal/image.hpp"
@@ -24,9 +25,15 @@ namespace compueye::firmware {
 /// Whether pictures go to the terminal: by default when it can draw and nothing else wants the standard output.
 [[nodiscard]] bool shows_pictures(const RunOptions& options);
 
-/// Every sink the options ask for. `files` gets what will have been written.
-[[nodiscard]] std::unique_ptr<hal::FrameSink> make_sinks(const RunOptions& options, Session& session,
-                                                         const LiveStatus& status, std::vector<std::string>& files);
+/// Where pictures go.
+struct RunSinks {
+  std::unique_ptr<hal::FrameSink> all;
+  TerminalSink* screen = nullptr;  ///< among them, if pictures are shown
+};
+
+/// Every sink the options ask for; says what it cannot do of them. `files` gets what will have been written.
+[[nodiscard]] RunSinks make_sinks(const RunOptions& options, Session& session, const LiveStatus& status,
+                                  std::vector<std::string>& files);
 
 /// The contact sheet of a run: scene | conventional eye | reconstruction (the last delivered frame) | its error, with
 /// their figures. An empty `conventional` picture is left out.

@@ -169,7 +169,7 @@ void tell_frames(Figures& f, const RunReport& report) {
       "[; {health.masked_channels_min} to {health.masked_channels_max} channels masked]\n");
   if (!report.files.empty()) f.say("written: " + fmt::format("{}", fmt::join(report.files, ", ")) + "\n");
   const std::string counters = hal::text_of(report.summary.source_counters);
-  if (!counters.empty()) f.say("source: " + counters + "\n");
+  if (!counters.empty()) f.say("source: " + counters).tell("[; {faults:# fault} in all]\n");
 }
 
 void tell_tables(Figures& f, const RunReport& report) {
@@ -261,6 +261,7 @@ Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& 
             {"deadline", deadline_figures(report)},
             {"health", health_figures(s)},
             {"source_counters", counter_figures(s.source_counters)},
+            {"faults", hal::faults_in(s.source_counters)},
             {"quality", value_of(report.quality)},
             {"quality_frames", report.measured},
             {"conventional", value_of(report.conventional)},

@@ -74,6 +74,11 @@ class Eye final : public hal::SampleSource {
   }
   void do_stop() noexcept override {}
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override { return account_; }
+  [[nodiscard]] bool do_recovering() const noexcept override { return silent; }
+  [[nodiscard]] std::uint64_t do_faults() const noexcept override { return hal::faults_in(do_counters()); }
+  [[nodiscard]] std::vector<hal::Counter> do_counters() const override {
+    return {{"silence", "no frame", 3}, {"restart", "begun anew", 2, false}};
+  }
 
   hal::SourceDescription description_;
   hal::Clock& clock_;
@@ -219,4 +224,14 @@ TEST_CASE("a pipe without a reader is refused and not waited for, and a link is 
   std::filesystem::create_symlink(folder / "elsewhere", link);
   check_error(RecordingWriter::create(link, header), hal::ErrorCode::io, link, {});
   CHECK_FALSE(std::filesystem::exists(folder / "elsewhere"));
+}
+
+TEST_CASE("what a source says of itself it says through its recorder, too") {
+  Recorder recorder;
+  REQUIRE(recorder.source->start());
+  CHECK_FALSE(recorder.source->recovering());
+  recorder.eye.silent = true;
+  CHECK(recorder.source->recovering());
+  CHECK(recorder.source->faults() == 3);
+  CHECK(hal::text_of(recorder.source->counters()) == "silence 3, restart 2");
 }

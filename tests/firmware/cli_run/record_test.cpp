@@ -111,6 +111,7 @@ TEST_CASE("a damaged and torn recording still runs, and the run says what is mis
   CHECK(json["frames"]["dropped"]["corrupt"] == 1);
   CHECK(json["frames"]["balanced"] == true);
   CHECK(json["source_counters"]["damaged_frames"] == 1);
+  CHECK(json["faults"] == 1);
   CHECK(json["source_counters"]["torn_bytes"] == 99);
   CHECK(json["source_counters"]["unrecorded_frames"] == 0);
   for (const std::size_t told : {std::size_t{99}, first + 11 * frame, first + 4 * frame}) {

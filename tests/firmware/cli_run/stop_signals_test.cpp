@@ -115,6 +115,38 @@ TEST_CASE("a terminal that takes nothing holds neither the frames nor the end of
   }
 }
 
+TEST_CASE("a live view says that no frame comes before the first one, too") {
+  ::setenv("TERM", "xterm", 1);
+  const CopiedBoard board;
+  board.change("frame_rate_hz = ", "frame_rate_hz = 0.5 # ");
+  const PseudoTerminal terminal;
+  Program program(board.run_arguments({"--frames", "0"}), terminal.fd());
+  std::string shown;
+  CHECK(comes_true(program, [&] { return contains(shown += terminal.shown(), "no frame yet  silent "); }));
+  program.signal(SIGTERM);
+  CHECK_FALSE(program.wait().timed_out);
+}
+
+TEST_CASE("pictures that a terminal cannot show are left out with a word, once") {
+  const CopiedBoard board;
+  for (const char* const term : {"dumb", "", "xterm"}) {
+    CAPTURE(term);
+    ::setenv("TERM", term, 1);
+    for (const bool asked : {true, false}) {
+      const PseudoTerminal terminal;
+      const auto arguments = board.run_arguments(asked ? std::vector<std::string>{"--frames", "2", "--show"}
+                                                       : std::vector<std::string>{"--frames", "2"});
+      const Ended ended = Program(arguments, terminal.fd()).wait();
+      CHECK(ended.exit_code == 0);
+      const bool draws = std::string_view(term) == "xterm";
+      CHECK(contains(terminal.shown(), "\x1b[") == draws);
+      const std::size_t at = ended.err.find("note: --show: ");
+      CHECK((at != std::string::npos) == (asked && !draws));
+      CHECK(ended.err.rfind("note: --show: ") == at);
+    }
+  }
+}
+
 TEST_CASE("a reader of the pictures that sleeps does not hold the run, whose files are whole") {
   const CopiedBoard board;
   int pipe[2];

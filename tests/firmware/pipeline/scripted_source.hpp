@@ -55,6 +55,7 @@ class ScriptedSource final : public hal::SampleSource {
   void do_stop() noexcept override;
   bool do_recovering() const noexcept override { return recovers && recovers(); }
   hal::FrameAccount do_account() const noexcept override;
+  std::uint64_t do_faults() const noexcept override { return hal::faults_in(tells); }
   std::vector<hal::Counter> do_counters() const override { return tells; }
   hal::Result<hal::SampleBlock> at_the_end(std::int64_t deadline_ns);
   hal::SampleBlock block(const ScriptedFrame& plan);

@@ -30,6 +30,8 @@ firmware::RunSummary run_with_outage(const Bus* bus, std::int64_t away_ns, EyeRi
   CHECK(summary.frames.balanced());
   CHECK(summary.frames.produced == rig.shown.made());
   CHECK(summary.frames.delivered == sink.frames.size());
+  CHECK(rig.source().faults() == hal::faults_in(summary.source_counters));
+  CHECK(rig.source().faults() >= 2);  // unplugged, and looked for in vain
   return summary;
 }
 
