@@ -1,0 +1,27 @@
+#include "studies/stability/hard_responses.hpp"
+#include "tests/hard/hard_eyes.hpp"
+#include "tests/hard/hard_row.hpp"
+
+namespace compueye::tests {
+
+using namespace firmware;
+
+// clang-format off
+std::vector<HardRow> degenerate_rows() {
+  return {
+      {.hard = {.name = "nothing seen at all", .reason = "A is all zero: there is nothing to solve."}, .eye = zero_response, .must = Must::be_refused, .place = "response"},
+      {.hard = {.name = "one pixel of one row", .reason = "Five of six rows are blind, 63 of 64 pixels unseen."}, .eye = sees_last_pixel},
+      {.hard = {.name = "nine rows in ten blind", .reason = "Two or three samples are all there is.", .response = {blinded, 0.9}}, .eye = ordinary_eye},
+      {.hard = {.name = "half of the pixels unseen", .reason = "Only penalty and constraint say anything about them.", .response = {unseen, 0.5}}, .eye = ordinary_eye},
+      {.hard = {.name = "M = 1", .reason = "A A' is a single number.", .response = {first_row, 0.0}}, .eye = eye_of_10_deg},
+      {.hard = {.name = "N = 1", .reason = "A picture of one pixel: no differences, no wavelets, one cosine."}, .eye = one_pixel},
+      {.hard = {.name = "M = N = 1", .reason = "One number from one number."}, .eye = one_of_each},
+      {.hard = {.name = "M > N", .reason = "The factor is on the longer side.", .response = {tall, 0.05}}, .eye = eye_of_10_deg},
+      {.hard = {.name = "7 x 9 pixels", .reason = "No side is even: a wavelet has no level at all."}, .eye = odd_picture},
+      {.hard = {.name = "6 x 10 pixels", .reason = "Both sides are even once: a wavelet has one level, db4 none."}, .eye = half_odd_picture},
+      {.hard = {.name = "1 x 12 pixels", .reason = "A picture that is a line: differences in one direction only."}, .eye = line_picture},
+  };
+}
+// clang-format on
+
+}  // namespace compueye::tests

@@ -1,0 +1,116 @@
+#include "tests/hard/hard_eyes.hpp"
+
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "calib/nominal.hpp"
+#include "calib/plausible_response.hpp"
+#include "hal/eye_geometry.hpp"
+#include "tests/recon/random_problem.hpp"
+
+namespace compueye::tests {
+namespace {
+
+using hal::Lattice;
+using recon::Response;
+
+constexpr double deg = std::numbers::pi / 180.0;
+
+hal::EyeGeometry geometry(double acceptance_deg, double between_deg = 2.5, Lattice lattice = Lattice::fisheye) {
+  hal::EyeGeometry eye;
+  eye.lattice = lattice;
+  eye.rows = eye.columns = 5;
+  eye.interommatidial_rad = between_deg * deg;
+  eye.acceptance_rad = acceptance_deg * deg;
+  eye.pitch_mm = lattice == Lattice::plane || lattice == Lattice::cylinder ? 1.5 : 0.0;
+  return eye;
+}
+
+hal::ObjectPlane plane_of(int rows, int cols) {
+  return {rows, cols, 8.0, 8.0, 30.0};
+}
+
+Response seen_by(const hal::EyeGeometry& eye, int rows = 8, int cols = 8) {
+  return calib::nominal_response(eye, plane_of(rows, cols)).value().with_image(rows, cols).value();
+}
+
+Response dense(int rows, int image_rows, int image_cols, std::vector<double> values) {
+  return Response::from_dense(rows, image_rows * image_cols, std::move(values))
+      .value()
+      .with_image(image_rows, image_cols)
+      .value();
+}
+
+}  // namespace
+
+Response ordinary_eye() {
+  return seen_by(geometry(8.0));
+}
+Response narrow_eye() {
+  return seen_by(geometry(1.5));
+}
+Response eye_of_10_deg() {
+  return seen_by(geometry(10.0));
+}
+Response eye_of_60_deg() {
+  return seen_by(geometry(60.0));
+}
+Response widest_eye() {
+  return seen_by(geometry(120.0, 18.0));
+}
+Response azimuth_eye() {
+  return seen_by(geometry(8.0, 2.5, Lattice::azimuth_elevation));
+}
+Response tangent_eye() {
+  return seen_by(geometry(8.0, 2.5, Lattice::tangent));
+}
+Response plane_eye() {
+  return seen_by(geometry(8.0, 2.5, Lattice::plane));
+}
+Response cylinder_eye() {
+  return seen_by(geometry(8.0, 2.5, Lattice::cylinder));
+}
+Response flat_eye() {
+  return seen_by(geometry(10.0, 0.01));
+}
+Response one_axis_eye() {
+  return seen_by(geometry(10.0, 1e-9));
+}
+
+Response measured_rows() {
+  return calib::plausible_response(geometry(8.0), plane_of(8, 8), {}, 5).value().with_image(8, 8).value();
+}
+
+Response large_eye() {
+  hal::EyeGeometry eye = geometry(15.0, 1.0);
+  eye.rows = eye.columns = 80;
+  return calib::nominal_response(eye, {160, 160, 80.0, 80.0, 30.0}).value().with_image(160, 160).value();
+}
+
+Response odd_picture() {
+  return seen_by(geometry(8.0), 7, 9);
+}
+Response half_odd_picture() {
+  return seen_by(geometry(8.0), 6, 10);
+}
+Response line_picture() {
+  Random random(3);
+  return random_response(random, 5, Picture{1, 12}, 0.7);
+}
+Response one_pixel() {
+  return dense(3, 1, 1, {1.0, 0.5, 0.25});
+}
+Response one_of_each() {
+  return dense(1, 1, 1, {0.75});
+}
+Response zero_response() {
+  return dense(4, 2, 3, std::vector<double>(24, 0.0));
+}
+Response sees_last_pixel() {
+  std::vector<double> values(6 * 64, 0.0);
+  values.back() = 1.0;
+  return dense(6, 8, 8, std::move(values));
+}
+
+}  // namespace compueye::tests
