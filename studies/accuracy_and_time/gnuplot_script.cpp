@@ -10,22 +10,10 @@
 #include <utility>
 
 #include "firmware/text/number_text.hpp"
-#include "firmware/text/words.hpp"
+#include "studies/plots/gnuplot.hpp"
 
 namespace compueye::firmware {
 namespace {
-
-// Okabe and Ito's colours, which people with any colour vision can tell apart.
-constexpr std::array<std::string_view, most_named_curves> colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                                  "#e69f00", "#56b4e9", "#000000", "#8c6d1f"};
-constexpr std::array<int, most_named_curves> symbols{7, 5, 9, 11, 13, 15, 6, 4};
-
-/// In single quotes gnuplot changes nothing but a doubled quote.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : visible_text(text)) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
 
 /// Nought has no place on a logarithmic axis.
 double drawable(double nmse) {
@@ -43,23 +31,6 @@ std::string rows_of(const Sweep& s, const std::vector<std::size_t>& points, std:
   return text;
 }
 
-/// From a little below the least value to a little above the greatest, with ticks at every decade, or at 1, 2 and 5 of
-/// it where there are few.
-std::string axis_of(char axis, double least, double greatest) {
-  constexpr double margin = 1.4, few_decades = 2.5;
-  const double lo = least / margin, hi = greatest * margin;
-  std::string ticks;
-  const bool fine = std::log10(hi / lo) < few_decades;
-  for (int exponent = static_cast<int>(std::floor(std::log10(lo))); std::pow(10.0, exponent) <= hi; ++exponent) {
-    const double decade = std::pow(10.0, exponent);
-    for (const double step : {1.0, 2.0, 5.0}) {
-      if (decade * step < lo || decade * step > hi || (step > 1.0 && !fine)) continue;
-      ticks += fmt::format("{}'{:g}' {}", ticks.empty() ? "" : ", ", decade * step, decade * step);
-    }
-  }
-  return fmt::format("set {0}range [{1}:{2}]\nset {0}tics ({3})\n", axis, lo, hi, ticks);
-}
-
 std::string axes_of(const Sweep& s, std::size_t level) {
   constexpr double worst_shown = 2.0;  // far above a black picture nothing is worth comparing
   double fast = s.points.front().median_ms, slow = fast, best = worst_shown, worst = 0.0;
@@ -71,7 +42,7 @@ std::string axes_of(const Sweep& s, std::size_t level) {
     worst = std::max(worst, nmse);
   }
   if (level < s.conventional.size()) worst = std::max(worst, drawable(s.conventional[level].mean.nmse));
-  return axis_of('x', fast, slow) + axis_of('y', best, std::min(worst, worst_shown));
+  return log_axis('x', fast, slow) + log_axis('y', best, std::min(worst, worst_shown));
 }
 
 std::string head_of(const Sweep& s, std::size_t level) {
@@ -80,7 +51,8 @@ std::string head_of(const Sweep& s, std::size_t level) {
       fmt::format("{} scenes ({}), noise {} white pixels = {:g} x the board's", s.pictures_a_level,
                   fmt::join(s.scenes, ", "), significant(s.levels[level].sigma, 3), s.levels[level].times);
   const std::string third = fmt::format("{}, one core where no threads are named", s.machine.cpu);
-  return fmt::format("set title {}.\"\\n\".{}.\"\\n\".{} noenhanced\n", quoted(first), quoted(second), quoted(third)) +
+  return fmt::format("set title {}.\"\\n\".{}.\"\\n\".{} noenhanced\n", quoted_for_plot(first), quoted_for_plot(second),
+                     quoted_for_plot(third)) +
          "set logscale xy\n" + axes_of(s, level) +
          "set xlabel 'median time of a frame (ms)'\n"
          "set ylabel 'mean NMSE (1 = a black picture)'\n"
@@ -104,8 +76,8 @@ std::string plots_of(const Sweep& s, std::size_t level, const std::vector<PlotCu
     grey_titled = true;
   }
   for (std::size_t c = 0; c < curves.size() && curves[c].named; ++c) {
-    text += fmt::format(", \\\n  $c{} using 1:2 with linespoints pt {} ps 1.1 lw 2 lc rgb '{}' title {}", c, symbols[c],
-                        colours[c], quoted(curves[c].title));
+    text += fmt::format(", \\\n  $c{} using 1:2 with linespoints pt {} ps 1.1 lw 2 lc rgb '{}' title {}", c,
+                        plot_symbols[c], plot_colours[c], quoted_for_plot(curves[c].title));
   }
   return text + "\n";
 }
@@ -170,15 +142,7 @@ std::string gnuplot_script(const Sweep& sweep, std::size_t level, const std::str
     text += fmt::format("conventional = {}\n", drawable(sweep.conventional[level].mean.nmse));
   }
   text += head_of(sweep, level);
-  const std::string plots = plots_of(sweep, level, curves);
-  text += fmt::format(
-      "set terminal svg size 1200,675 dynamic font 'sans,15' background rgb 'white'\n"
-      "set output {}\n",
-      quoted(stem + ".svg.partial"));
-  text += plots;
-  text += fmt::format("set terminal pngcairo size 1200,675 font 'sans,12' background rgb 'white'\nset output {}\n",
-                      quoted(stem + ".png.partial"));
-  return text + plots + "set output\n";
+  return text + on_both_terminals(stem, plots_of(sweep, level, curves));
 }
 
 }  // namespace compueye::firmware

@@ -1,57 +1,21 @@
 #include "studies/accuracy_and_time/sweep_files.hpp"
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <filesystem>
 #include <set>
-#include <span>
-#include <system_error>
 #include <vector>
 
-#include "firmware/files/atomic_file.hpp"
 #include "firmware/operating_points/stored_points.hpp"
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
 #include "studies/accuracy_and_time/gnuplot_script.hpp"
+#include "studies/plots/gnuplot.hpp"
 
 namespace compueye::firmware {
 namespace {
 
-using hal::ErrorCode;
 using hal::Result;
-
-constexpr int not_started = 127;
-
-/// Its exit code, 127 when there is none to start.
-int run_gnuplot(const std::string& folder, const std::string& script) {
-  std::string program = "gnuplot", argument = script;
-  std::array<char*, 3> words{program.data(), argument.data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", 0, 0);
-  pid_t process = -1;
-  const int failed = posix_spawnp(&process, program.c_str(), &actions, nullptr, words.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) return not_started;
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
-}
-
-Result<void> publish(const std::string& file) {
-  std::error_code ec;
-  std::filesystem::rename(file + ".partial", file, ec);
-  if (!ec) return {};
-  return hal::fail(ErrorCode::io, file, "was not drawn by gnuplot: " + ec.message());
-}
 
 constexpr const char* header =
     "board,solver,basis,constraint,operator,precision,warm_motion,threads,iterations,times_board_noise,sigma,lambda,"
@@ -170,18 +134,9 @@ std::string plot_stem(const NoiseLevel& level) {
 Result<bool> write_plots(const std::string& folder, const Sweep& sweep) {
   bool drawn = true;
   for (std::size_t level = 0; level < sweep.levels.size(); ++level) {
-    const std::string stem = plot_stem(sweep.levels[level]), file = folder + '/' + stem;
-    const std::string script = gnuplot_script(sweep, level, stem);
-    TRY(write_file_atomically(file + ".gnuplot", std::as_bytes(std::span(script))));
+    const std::string stem = plot_stem(sweep.levels[level]);
     // Without gnuplot the other scripts are worth having all the same.
-    const int code = drawn ? run_gnuplot(folder, stem + ".gnuplot") : not_started;
-    drawn = code != not_started;
-    if (!drawn) continue;
-    if (code != 0) {
-      return hal::fail(ErrorCode::io, file + ".gnuplot",
-                       fmt::format("gnuplot ended with exit code {}; pareto.csv has every point", code));
-    }
-    for (const char* ending : {".svg", ".png"}) TRY(publish(file + ending));
+    drawn = TRY(write_plot(folder, stem, gnuplot_script(sweep, level, stem), "pareto.csv")) && drawn;
   }
   return drawn;
 }

@@ -30,6 +30,7 @@ const std::map<std::string_view, Failing> failing{
     {"reconstruct", {"--response missing.npy --samples y.npy --size 2x2 --sigma 1", "missing.npy"}},
     {"compare", {"--board missing", "missing"}},
     {"pareto", {"--board missing", "missing"}},
+    {"stability", {"--board missing", "missing"}},
     {"inspect", {"missing.npy", "missing.npy"}},
     {"record", {"--board missing --out z.rec", "missing"}},
     {"replay", {"missing.rec", "missing.rec"}},
