@@ -192,7 +192,7 @@ bool DeviceSource::ask_time(std::int64_t deadline_ns) {
   const auto status = requests_.status(deadline_ns);
   saw_there(status);
   if (status) {
-    if (status->boot_count == status_.boot_count) reader_->set_time(*status);
+    if (status->config_id == configuration_.config_id) reader_->set_time(*status);
     ask_time_pause_.reset();
     return true;
   }

@@ -81,7 +81,9 @@ std::uint64_t StreamExtent::most_exposed(std::int64_t now_ns) const noexcept {
 
 StreamExtent::Frames StreamExtent::close(const protocol::Status& status, std::int64_t now_ns) noexcept {
   open_ = false;
-  if (status.boot_count != before_.boot_count) {
+  // One that has started anew has no configuration, unless it did so before it got this one.
+  const bool anew = status.boot_count != before_.boot_count;
+  if (anew && status.config_id != config_id_) {
     const auto up_ns = static_cast<std::int64_t>(std::min(status.now_ns, static_cast<std::uint64_t>(never)));
     const std::int64_t end_ns = std::min({gone_ns_, stopped_ns_, now_ns - up_ns});
     const bool once = status.boot_count == before_.boot_count + 1;
@@ -89,7 +91,7 @@ StreamExtent::Frames StreamExtent::close(const protocol::Status& status, std::in
     return {clock_.exposed_before(end_ns), 0, true};
   }
   // The counters of the stream before: START did not arrive.
-  const bool untouched = status.frames == before_.frames && status.last_t_ns == before_.last_t_ns;
+  const bool untouched = !anew && status.frames == before_.frames && status.last_t_ns == before_.last_t_ns;
   if (status.config_id != config_id_ || untouched) return {};
   const std::uint64_t estimate = clock_.exposed_before(now_ns);
   const auto counted = near_estimate(status.frames, estimate, most_exposed(now_ns));

@@ -200,7 +200,8 @@ class DeviceEmulator {
   Configuration configuration_;
   std::uint32_t stream_config_id_ = 0;
   std::int64_t stream_start_ns_ = 0, period_ns_ = 0;
-  std::uint64_t frame_ = 0;  // the next one
+  std::uint64_t frame_ = 0;      // the next one
+  std::uint64_t last_t_ns_ = 0;  ///< of the last frame, by the clock as it was then
   std::uint32_t seq_ = 0;
   std::uint32_t dropped_ = 0;
   bool overrun_pending_ = false;

@@ -168,7 +168,7 @@ Status DeviceEmulator::status(std::int64_t now_ns) const noexcept {
   status.packets = seq_;
   status.refused_requests = refused_;
   status.now_ns = clock_ns(now_ns);
-  status.last_t_ns = frame_ == 0 ? 0 : clock_ns(exposure_start_ns(frame_ - 1));
+  status.last_t_ns = frame_ == 0 ? 0 : last_t_ns_;
   return status;
 }
 

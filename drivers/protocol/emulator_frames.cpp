@@ -22,6 +22,8 @@ void DeviceEmulator::expose(std::int64_t ready_ns) {
     if (state_ != DeviceState::streaming || frame_ready_ns() != ready_ns) return;
   }
   const std::uint64_t frame = frame_++;
+  const std::int64_t start_ns = exposure_start_ns(frame);
+  last_t_ns_ = clock_ns(start_ns);
   ++truth_.frames;
   if (stream_config_id_ == 0) ++truth_.frames_unasked;
   const bool forced = now_wrong_.frames_to_overrun > 0;
@@ -32,7 +34,6 @@ void DeviceEmulator::expose(std::int64_t ready_ns) {
     overrun_pending_ = true;
     return;
   }
-  const std::int64_t start_ns = exposure_start_ns(frame);
   generator_(EmulatedExposure{frame, start_ns, configuration_.exposure_ns, levels_}, codes_);
 
   if (settings_.bus->framing == Framing::reports) {
@@ -54,6 +55,7 @@ void DeviceEmulator::overrun_until(std::int64_t t_ns) noexcept {
   }
   const auto frames = static_cast<std::uint64_t>((t_ns - frame_ready_ns() - 1) / period_ns_ + 1);
   frame_ += frames;
+  last_t_ns_ = clock_ns(exposure_start_ns(frame_ - 1));
   dropped_ += static_cast<std::uint32_t>(frames);
   overrun_pending_ = true;
   truth_.frames += frames;

@@ -133,6 +133,36 @@ TEST_CASE("an eye that starts anew twice in an outage: no frame is invented, and
   }
 }
 
+TEST_CASE("an eye that started anew between the last STATUS and SET_CONFIG counts its stream all the same") {
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus->name);
+    auto emulator = eye_settings(bus);
+    emulator.boot_ns = 0;
+    EyeRig rig(emulator);
+    REQUIRE(rig.start());
+    read_frames(rig, 20);
+    bool recovers = true;
+    int asked = 0;
+    rig.way->at_request = [&](Request request, const auto& done) {
+      if (!done || request != Request::status) return;
+      if (std::exchange(recovers, false)) rig.inject({.kind = FaultKind::reboot});
+      ++asked;
+    };
+    rig.inject({.kind = FaultKind::stall_stream});
+    read_frames(rig, 50);
+    // It was asked for the time of this stream, and told it.
+    CHECK(asked <= 4);
+    CHECK(rig.next_frame()->flags.time_ok);
+    // Its clock counts from before the stream, as if that had never begun.
+    rig.inject({.kind = FaultKind::clock_jump, .value = 3600 * second});
+    rig.inject({.kind = FaultKind::stall_stream});
+    rig.clock.advance(350 * second);
+    read_frames(rig, 20);
+    CHECK(unaccounted(rig) == 0);
+    CHECK(rig.source().account().estimated == 0);
+  }
+}
+
 TEST_CASE("what is known by count is no estimate, what is known by time alone is one") {
   for (const Bus* const bus : buses) {
     CAPTURE(bus->name);

@@ -98,8 +98,15 @@ TEST_CASE("the extent of a stream: asked, forgotten, unreachable, never begun") 
   // Started anew 100 ms ago; seen to be gone before that.
   protocol::Status anew = after;
   anew.boot_count = 4;
+  anew.config_id = 0;
   anew.now_ns = 100 * ms;
   CHECK(begun().close(anew, 1255 * ms).made == 15);
+  // It did so between the last STATUS and SET_CONFIG: it counts this stream.
+  protocol::Status anew_before = after;
+  anew_before.boot_count = 4;
+  anew_before.now_ns = 300 * ms;
+  CHECK(begun().close(anew_before, 1255 * ms).made == 25);
+  CHECK_FALSE(begun().close(anew_before, 1255 * ms).estimated);
   StreamExtent gone = begun();
   gone.saw_gone(1101 * ms);
   gone.saw_gone(1201 * ms);

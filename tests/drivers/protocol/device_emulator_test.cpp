@@ -266,6 +266,7 @@ TEST_CASE("what was counted stands in STATUS after STOP, and a page past the end
     const Status before = eye.status().value();
     REQUIRE(before.frames > 5);
     REQUIRE(eye.request(Request::stop));
+    eye.inject({.kind = FaultKind::clock_jump, .value = -5'000'000'000});
     const Status after = eye.status().value();
     CHECK(after.state == DeviceState::configured);
     CHECK(after.config_id == before.config_id);

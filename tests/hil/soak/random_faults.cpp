@@ -50,7 +50,7 @@ Incident RandomFaults::meeting(std::int64_t now_ns) {
     echo = echo || wrong;
     incident.faults.insert(incident.faults.end(), more.begin(), more.end());
   }
-  if (below(4) == 0) incident.reader_sleeps_ns = up_to_ns(1500 * ms);
+  if (below(4) == 0) incident.reader_sleeps_ns = up_to_ns(below(8) == 0 ? 800'000 * ms : 1500 * ms);
   incident.over_ns = now_ns + incident.reader_sleeps_ns + 1500 * ms;
   return incident;
 }

@@ -25,7 +25,7 @@ class RandomFaults {
   /// The next one, from `now_ns` on.
   [[nodiscard]] Incident next(std::int64_t now_ns);
   /// Whatever may meet: up to four faults of the way, answers that are lost, up to three of the device, in any order,
-  /// while it recovers or not, a clock that is set, and a reader that comes late.
+  /// while it recovers or not, a clock that is set, and a reader who may be away for longer than HID's numbers last.
   [[nodiscard]] Incident meeting(std::int64_t now_ns);
   /// Frames until the next one.
   [[nodiscard]] std::uint64_t calm_frames() { return 20 + below(150); }
