@@ -100,7 +100,7 @@ void soak_both(std::uint64_t blocks, std::uint64_t seed, Wildness wildness) {
     CHECK(result.made >= blocks);
     CHECK(result.incidents > blocks / 500);
     CHECK(result.account.delivered > blocks / 2);
-    CHECK(result.worst_outage_ns <= (wildness == Wildness::incidents ? 6 : 10) * second);
+    CHECK(result.worst_outage_ns <= 10 * second);  // requests refused many times in a row cost most
     std::string drops;
     for (std::size_t k = 0; k < hal::drop_reason_count; ++k) {
       if (result.account.dropped[k] == 0) continue;
