@@ -186,12 +186,17 @@ void Reconstructor::forget_last_frame(std::span<std::byte> workspace) const noex
   with_problem(*tables_, [&](const auto& solver, const auto&) { solver.forget(workspace.data()); });
 }
 
-FrameInfo Reconstructor::solve(std::span<const float> y, std::span<const float> weights, std::span<std::byte> workspace,
-                               std::span<float> x) const noexcept {
+bool Reconstructor::fits(std::span<const float> y, std::span<const float> weights, std::span<std::byte> workspace,
+                         std::size_t bytes, std::span<const float> x) const noexcept {
   const bool aligned = reinterpret_cast<std::uintptr_t>(workspace.data()) % core::Workspace::alignment == 0;
   const auto channel_count = static_cast<std::size_t>(channels());
-  if (!aligned || workspace.size() < required_bytes() || y.size() != channel_count ||
-      (!weights.empty() && weights.size() != channel_count) || x.size() != static_cast<std::size_t>(pixels())) {
+  return aligned && workspace.size() >= bytes && y.size() == channel_count &&
+         (weights.empty() || weights.size() == channel_count) && x.size() == static_cast<std::size_t>(pixels());
+}
+
+FrameInfo Reconstructor::solve(std::span<const float> y, std::span<const float> weights, std::span<std::byte> workspace,
+                               std::span<float> x) const noexcept {
+  if (!fits(y, weights, workspace, required_bytes(), x)) {
     std::fill(x.begin(), x.end(), 0.0F);
     FrameInfo refused;
     refused.point = operating_point();
@@ -200,6 +205,20 @@ FrameInfo Reconstructor::solve(std::span<const float> y, std::span<const float> 
   const float* w = weights.empty() ? nullptr : weights.data();
   return with_problem(*tables_, [&](const auto& solver, const auto& problem) {
     return solver.solve(problem, y.data(), w, workspace.data(), x.data());
+  });
+}
+
+std::size_t Reconstructor::least_residual_bytes() const noexcept {
+  return with_problem(*tables_, [](const auto&, const auto& problem) { return core::least_residual_bytes(problem); });
+}
+
+core::LeastResidual Reconstructor::least_residual(std::span<const float> y, std::span<const float> weights,
+                                                  std::span<std::byte> workspace,
+                                                  std::span<const float> x) const noexcept {
+  if (!fits(y, weights, workspace, least_residual_bytes(), x)) return {};
+  const float* w = weights.empty() ? nullptr : weights.data();
+  return with_problem(*tables_, [&](const auto&, const auto& problem) {
+    return core::least_residual(problem, y.data(), w, x.data(), workspace.data());
   });
 }
 

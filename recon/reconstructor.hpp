@@ -8,6 +8,7 @@
 
 #include "hal/result.hpp"
 #include "recon/core/frame/frozen_frame.hpp"
+#include "recon/core/frame/least_residual.hpp"
 #include "recon/problem/plan.hpp"
 #include "recon/problem/response.hpp"
 #include "recon/setup/factor.hpp"
@@ -59,6 +60,13 @@ class Reconstructor {
   [[nodiscard]] FrameInfo solve(std::span<const float> y, std::span<const float> weights,
                                 std::span<std::byte> workspace, std::span<float> x) const noexcept;
 
+  /// What no picture can explain of a frame that solve() made x of. `workspace` is 64-byte aligned memory of
+  /// least_residual_bytes(), not that of solve(); the rest as for solve(), and buffers of the wrong size tell nothing.
+  [[nodiscard]] core::LeastResidual least_residual(std::span<const float> y, std::span<const float> weights,
+                                                   std::span<std::byte> workspace,
+                                                   std::span<const float> x) const noexcept;
+  [[nodiscard]] std::size_t least_residual_bytes() const noexcept;
+
   /// What the factor of such a plan is, without its values: what a stored one has to be to be used.
   [[nodiscard]] static Factor wanted_factor(const Response& response, const Objective& objective, const Plan& plan);
 
@@ -78,6 +86,8 @@ class Reconstructor {
 
  private:
   struct Tables;
+  [[nodiscard]] bool fits(std::span<const float> y, std::span<const float> weights, std::span<std::byte> workspace,
+                          std::size_t bytes, std::span<const float> x) const noexcept;
   static hal::Result<Reconstructor> create_as_applied(const Response& response, const Objective& objective,
                                                       const Plan& plan, std::optional<Factor> factor,
                                                       const Progress& progress);

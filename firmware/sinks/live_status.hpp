@@ -17,6 +17,10 @@ class LiveStatus {
   /// SampleSource::faults() and recovering().
   void source_is(std::uint64_t faults, bool recovering) noexcept;
 
+  /// The response does not fit: how many times what noise explains the residual is; 0: it does.
+  void misfit_is(double times) noexcept { misfit_.store(times, std::memory_order_relaxed); }
+
+  [[nodiscard]] double misfit() const noexcept { return misfit_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t faults() const noexcept { return faults_.load(std::memory_order_relaxed); }
   [[nodiscard]] bool recovering() const noexcept { return recovering_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t delivered() const noexcept { return delivered_.load(std::memory_order_relaxed); }
@@ -35,6 +39,7 @@ class LiveStatus {
   std::atomic<std::int64_t> age_ns_{0};
   std::atomic<std::uint64_t> faults_{0};
   std::atomic<bool> recovering_{false};
+  std::atomic<double> misfit_{0.0};
 };
 
 /// A LiveStatus as a line of text, with the rate since about a second ago. One a reader.
@@ -44,7 +49,8 @@ class StatusLine {
 
   /// "24.8/s, age 34 ms, 2 dropped in 1 gap, 0 late, 0 faults": into `room`, cut to it; "-/s" within the first second.
   /// While no frame comes "recovering, silent 1.2 s" instead of rate and age: from a second on, and from three times
-  /// what the frame before took. Nothing before the first frame as long as that is no silence. Does not allocate.
+  /// what the frame before took. Nothing before the first frame as long as that is no silence. A
+  /// response that does not fit ends it: ", residual 94 x noise". Does not allocate.
   [[nodiscard]] std::string_view print(std::int64_t now_ns, std::span<char> room) noexcept;
 
  private:

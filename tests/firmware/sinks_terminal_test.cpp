@@ -260,6 +260,17 @@ TEST_CASE("the line says that no frame comes, and for how long, when that is lon
   CHECK(line.print(9300 * ms, room) == "recovering, silent 0.1 s, 0 dropped in 0 gaps, 0 late, 2 faults");
 }
 
+TEST_CASE("the line says that the response does not fit as long as it does not") {
+  LiveStatus status;
+  status.published(0, 1'000'000, false);
+  status.misfit_is(94.4);
+  StatusLine line(status);
+  std::array<char, 160> room{};
+  CHECK(line.print(0, room) == "-/s, age 1 ms, 0 dropped in 0 gaps, 0 late, 0 faults, residual 94 x noise");
+  status.misfit_is(0.0);
+  CHECK(line.print(0, room).ends_with("0 faults"));
+}
+
 TEST_CASE("the line below the picture goes on while no frame comes") {
   const Pipe pipe;
   hal::VirtualClock clock;

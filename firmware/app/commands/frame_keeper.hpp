@@ -38,6 +38,8 @@ class FrameKeeper final : public FrameObserver {
   [[nodiscard]] const LiveStatus& status() const noexcept { return status_; }
   /// LiveStatus::source_is().
   void source_is(std::uint64_t faults, bool recovering) noexcept { status_.source_is(faults, recovering); }
+  /// LiveStatus::misfit_is().
+  void misfit_is(double times) noexcept { status_.misfit_is(times); }
 
  private:
   [[nodiscard]] std::span<float> slot(std::size_t index) noexcept;

@@ -130,9 +130,11 @@ Result<void> check_health(const recon::FrameInfo& info, std::int64_t frame) {
 /// Solves every frame in order and hands the pictures to `outputs`. Errors: interrupted; out_of_range when a frame's
 /// numbers leave the range of the precision, named by frame; those of `outputs`.
 Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& reconstructor,
-                                                    const FrameInputs& inputs, const Truth* truth,
-                                                    PictureOutputs& outputs, Session& session) {
+                                                    std::optional<double> sigma, const FrameInputs& inputs,
+                                                    const Truth* truth, PictureOutputs& outputs, Session& session) {
   const recon::AlignedWorkspace workspace(reconstructor.required_bytes());
+  std::optional<recon::ResponseFitter> fitter;
+  if (sigma) fitter.emplace(reconstructor, *sigma);
   std::vector<float> picture(static_cast<std::size_t>(reconstructor.pixels()));
   std::vector<FrameRecord> records;
   records.reserve(static_cast<std::size_t>(inputs.frames));
@@ -148,6 +150,7 @@ Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& 
     record.solve_ms = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-6;
     TRY(session.check_stop());
     TRY(check_health(record.info, f));
+    if (fitter) record.fit = fitter->fit(record.info, inputs.samples_of(f), inputs.weights_of(f), picture);
     record.clipped_pixels = TRY(outputs.add(picture));
     if (truth != nullptr) record.quality = TRY(truth->compare(f, picture));
     records.push_back(record);
@@ -174,8 +177,8 @@ Result<void> reconstruct(const ReconstructOptions& o, Session& session) {
   const double setup_s = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-9;
   inputs.response.reset();
 
-  const std::vector<FrameRecord> records =
-      TRY(reconstruct_frames(reconstructor, inputs.frames, inputs.truth ? &*inputs.truth : nullptr, outputs, session));
+  const std::vector<FrameRecord> records = TRY(reconstruct_frames(
+      reconstructor, problem.board.sigma, inputs.frames, inputs.truth ? &*inputs.truth : nullptr, outputs, session));
   TRY(session.seal());
   TRY(outputs.commit());
   return session.print(figures_of(o, problem.board.sigma, reconstructor, setup_s, records));

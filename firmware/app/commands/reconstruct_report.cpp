@@ -80,6 +80,8 @@ Figures frame_figures(const FrameRecord& record) {
                 {"objective", info.objective},
                 {"duality_gap", info.duality_gap >= 0.0 ? Value(info.duality_gap) : Value()},
                 {"residual", info.residual},
+                {"residual_over_noise", record.fit ? Value(record.fit->residual) : Value()},
+                {"least_over_noise", record.fit ? Value(record.fit->least) : Value()},
                 {"primal_residual", info.primal_residual},
                 {"dual_residual", info.dual_residual}};
   if (const auto& q = record.quality) frame.add("nmse", q->nmse).add("psnr_db", q->psnr_db).add("ssim", q->ssim);
@@ -140,6 +142,26 @@ void add_gap(std::span<const FrameRecord> frames, Figures& f) {
             ", the most that the objective may lie above its optimum");
 }
 
+/// Of the frame that the response fits least.
+void add_fit(std::span<const FrameRecord> frames, Figures& f) {
+  const auto misfits =
+      std::count_if(frames.begin(), frames.end(), [](const FrameRecord& r) { return r.fit && r.fit->misfit(); });
+  const auto worst = std::max_element(frames.begin(), frames.end(), [](const FrameRecord& a, const FrameRecord& b) {
+    return a.fit && b.fit && a.fit->least < b.fit->least;
+  });
+  const std::optional<recon::ResponseFit>& fit = worst->fit;
+  f.add("fit",
+        fit ? Value(Figures{
+                  {"misfits", misfits}, {"residual_over_noise", fit->residual}, {"least_over_noise", fit->least}})
+            : Value());
+  if (misfits == 0) return;
+  f.line("misfit",
+         "residual {fit.residual_over_noise:3} times what noise explains, and no picture's is below "
+         "{fit.least_over_noise:3}" +
+             std::string(frames.size() > 1 ? ", in {fit.misfits:# frame}" : "") +
+             ": do response, distance and samples belong together?");
+}
+
 }  // namespace
 
 Figures figures_of(const ReconstructOptions& o, std::optional<double> sigma, const recon::Reconstructor& r,
@@ -156,6 +178,7 @@ Figures figures_of(const ReconstructOptions& o, std::optional<double> sigma, con
   f.add("median_objective", median(frames, &recon::FrameInfo::objective), "objective", "{:6}" + of_frames);
   add_gap(frames, f);
   f.add("median_residual", median(frames, &recon::FrameInfo::residual), "residual", "{:4}" + of_frames);
+  add_fit(frames, f);
   f.add("health",
         Figures{{"converged", count(frames, recon::Health::converged)},
                 {"budget_used", count(frames, recon::Health::budget_used)},

@@ -7,6 +7,7 @@
 #include "firmware/eye/picture_quality.hpp"
 #include "firmware/text/figures.hpp"
 #include "recon/reconstructor.hpp"
+#include "recon/response_fit.hpp"
 
 namespace compueye::firmware {
 
@@ -14,6 +15,7 @@ namespace compueye::firmware {
 struct FrameRecord {
   recon::FrameInfo info;
   double solve_ms = 0.0;
+  std::optional<recon::ResponseFit> fit;  ///< with a sigma only
   std::int64_t clipped_pixels = 0;        ///< in its PNG
   std::optional<PictureQuality> quality;  ///< with a truth only
 };

@@ -25,6 +25,7 @@
 #include "firmware/operating_points/point_choice.hpp"
 #include "firmware/operating_points/point_ladder.hpp"
 #include "firmware/operating_points/stored_points.hpp"
+#include "firmware/pipeline/fit_watch.hpp"
 #include "firmware/pipeline/pipeline.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "firmware/sinks/live_status.hpp"
@@ -219,11 +220,13 @@ Result<void> BoardRun::run_pipeline() {
 }
 
 Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, FrameObserver& observer) {
+  FitWatch fit(eye().reconstructor(), board_.noise_sigma(), observer);
   auto pipeline =
-      TRY(Pipeline::create(pipeline_settings(), source_->source(), solver, *sinks.all, session_.clock(), &observer));
+      TRY(Pipeline::create(pipeline_settings(), source_->source(), solver, *sinks.all, session_.clock(), &fit));
   std::optional<RunWatch> watch;
-  watch.emplace([this, tell = how_far(sinks.screen), told = false]() mutable {
+  watch.emplace([this, &fit, tell = how_far(sinks.screen), told = false]() mutable {
     keeper_->source_is(source_->source().faults(), source_->source().recovering());
+    keeper_->misfit_is(fit.misfit());
     tell();
     const std::string failure = told ? std::string() : source_->failure();
     if (failure.empty()) return;
@@ -232,6 +235,7 @@ Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, Fram
   });
   report_.summary = pipeline.run(session_.stop_requested());
   watch.reset();
+  report_.fit = fit.summary();
   for (const std::string& sentence : source_->notes()) note(sentence);
   if (auto recorded = source_->recorded(); !recorded && !report_.summary.error) {
     report_.summary.error = std::move(recorded.error());

@@ -120,6 +120,14 @@ Value last_figures(const RunReport& report) {
                  {"quality", value_of(report.last_quality)}};
 }
 
+Figures fit_figures(const FitSummary& fit) {
+  const recon::ResponseFit& shown = fit.misfits > 0 ? fit.worst : fit.last;
+  return {{"frames", fit.frames},
+          {"misfits", fit.misfits},
+          {"residual_over_noise", shown.residual},
+          {"least_over_noise", shown.least}};
+}
+
 Figures stage_figures(const StageAccounts& accounts) {
   return {{"source", figures_of(accounts.source)},
           {"acquire", figures_of(accounts.acquire)},
@@ -167,6 +175,12 @@ void tell_frames(Figures& f, const RunReport& report) {
       "[, {health.dark_frames} dark][, {health.untrusted_times} with an untrusted time]"
       "[, {health.config_mismatches} with another configuration][, {health.read_timeouts} reads timed out]"
       "[; {health.masked_channels_min} to {health.masked_channels_max} channels masked]\n");
+  if (report.fit.misfits > 0) {
+    f.tell(
+        "misfit: residual {fit.residual_over_noise:3} times what noise explains, and no picture's is below "
+        "{fit.least_over_noise:3}, in {fit.misfits} of {fit.frames} frames looked at: do board, distance or "
+        "calibration fit?\n");
+  }
   if (!report.files.empty()) f.say("written: " + fmt::format("{}", fmt::join(report.files, ", ")) + "\n");
   const std::string counters = hal::text_of(report.summary.source_counters);
   if (!counters.empty()) f.say("source: " + counters).tell("[; {faults:# fault} in all]\n");
@@ -266,6 +280,7 @@ Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& 
             {"quality_frames", report.measured},
             {"conventional", value_of(report.conventional)},
             {"last", last_figures(report)},
+            {"fit", fit_figures(report.fit)},
             {"files", report.files},
             {"notes", report.notes}};
   if (s.error) f.add("error", figures_of(*s.error));

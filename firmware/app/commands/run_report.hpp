@@ -10,6 +10,7 @@
 #include "firmware/eye/ready_eye.hpp"
 #include "firmware/operating_points/deadline_choice.hpp"
 #include "firmware/operating_points/point_choice.hpp"
+#include "firmware/pipeline/fit_watch.hpp"
 #include "firmware/pipeline/run_summary.hpp"
 #include "firmware/text/figures.hpp"
 
@@ -38,6 +39,7 @@ struct RunReport {
   std::optional<DeadlineChoice> deadline;  ///< by trial
   std::optional<LadderRun> ladder;         ///< by stored points
   RunSummary summary;
+  FitSummary fit;
   std::optional<PictureQuality> quality;  ///< mean over `measured` delivered frames
   std::size_t measured = 0;
   std::optional<PictureQuality> last_quality;  ///< of the last delivered frame
