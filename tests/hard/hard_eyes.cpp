@@ -82,6 +82,12 @@ Response measured_rows() {
   return calib::plausible_response(geometry(8.0), plane_of(8, 8), {}, 5).value().with_image(8, 8).value();
 }
 
+Response eye_8x8() {
+  hal::EyeGeometry eye = geometry(8.0, 1.5);
+  eye.rows = eye.columns = 8;
+  return seen_by(eye, 16, 16);
+}
+
 Response large_eye() {
   hal::EyeGeometry eye = geometry(15.0, 1.0);
   eye.rows = eye.columns = 80;

@@ -18,6 +18,7 @@ namespace compueye::tests {
 [[nodiscard]] recon::Response flat_eye();          ///< axes .01 degrees apart
 [[nodiscard]] recon::Response one_axis_eye();      ///< axes 1e-9 degrees apart
 [[nodiscard]] recon::Response measured_rows();     ///< as a calibration might find them
+[[nodiscard]] recon::Response eye_8x8();           ///< 8 x 8 ommatidia of 8 degrees, 16 x 16 pixels
 [[nodiscard]] recon::Response large_eye();         ///< 80 x 80 ommatidia of 15 degrees, 160 x 160 pixels
 [[nodiscard]] recon::Response odd_picture();       ///< 7 x 9 pixels
 [[nodiscard]] recon::Response half_odd_picture();  ///< 6 x 10 pixels: one level of a wavelet

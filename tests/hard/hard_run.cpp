@@ -79,10 +79,10 @@ recon::Plan plan_of(const HardRow& row, const HardSetting& setting, const firmwa
   return plan;
 }
 
-HardRun run(const HardRow& row, const HardSetting& setting, const firmware::HardProblem& problem) {
+HardRun run(const recon::Objective& objective, const recon::Plan& plan, const firmware::HardProblem& problem) {
   HardRun result;
-  result.objective = objective_of(row, setting, problem);
-  const auto solver = recon::Reconstructor::create(problem.a, result.objective, plan_of(row, setting, problem));
+  result.objective = objective;
+  const auto solver = recon::Reconstructor::create(problem.a, objective, plan);
   if (!solver) {
     result.refused = solver.error();
     return result;
@@ -91,6 +91,10 @@ HardRun run(const HardRow& row, const HardSetting& setting, const firmware::Hard
   result.info = frame.info;
   result.x = std::move(frame.x);
   return result;
+}
+
+HardRun run(const HardRow& row, const HardSetting& setting, const firmware::HardProblem& problem) {
+  return run(objective_of(row, setting, problem), plan_of(row, setting, problem), problem);
 }
 
 }  // namespace compueye::tests

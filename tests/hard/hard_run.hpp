@@ -36,6 +36,8 @@ struct HardRun {
 [[nodiscard]] recon::Objective objective_of(const HardRow& row, const HardSetting& setting,
                                             const firmware::HardProblem& problem);
 [[nodiscard]] recon::Plan plan_of(const HardRow& row, const HardSetting& setting, const firmware::HardProblem& problem);
+[[nodiscard]] HardRun run(const recon::Objective& objective, const recon::Plan& plan,
+                          const firmware::HardProblem& problem);
 [[nodiscard]] HardRun run(const HardRow& row, const HardSetting& setting, const firmware::HardProblem& problem);
 
 }  // namespace compueye::tests
