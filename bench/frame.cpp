@@ -97,7 +97,7 @@ Part measure_adjoint(Operator& a) {
 Part measure_inverse(const recon::Response& seeing, const recon::Factor& factor) {
   recon::KeptTables kept;
   const recon::ParityClasses classes(seeing.rows(), recon::find_mirror_symmetry(seeing));
-  const auto h = recon::make_inverse(classes, factor.values.data(), kept);
+  const auto h = recon::make_inverse(classes, {}, factor.values.data(), kept);
   const auto x = some_numbers(h.order);
   std::vector<float> y(h.order), scratch(h.scratch_size());
   const auto entries = static_cast<double>(factor.values.size());

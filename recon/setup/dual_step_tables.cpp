@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "hal/try.hpp"
 #include "recon/problem/number_text.hpp"
@@ -96,9 +97,20 @@ Refinement refine(const ClassModes& modes, double penalty, double basis_share) {
 /// Beyond this the stored metric might have lost a mode, or turned it round.
 constexpr double unsafe_rounding = 0.5;
 
+/// What float32 leaves of f in the strongest mode, where F r = f_0 r - (f_0 - f) r is a small difference of large
+/// numbers. The modes are no more exact than that in double either.
+bool keeps_strongest(const ClassModes& modes, double penalty, double basis_share) {
+  const double rest = gain_of(modes.left_out(), penalty, basis_share);
+  constexpr double epsilon = std::numeric_limits<float>::epsilon();
+  return modes.count == 0 || epsilon * rest <= 0.25 * gain_of(modes.values[0], penalty, basis_share);
+}
+
 hal::Error too_long_steps(const ClassModes& modes, double least, double basis_share) {
   double penalty = least;
-  while (refine(modes, penalty, basis_share).rounding > unsafe_rounding) penalty *= 2.0;
+  while (!keeps_strongest(modes, penalty, basis_share) ||
+         refine(modes, penalty, basis_share).rounding > unsafe_rounding) {
+    penalty *= 2.0;
+  }
   return {hal::ErrorCode::out_of_range, "rho",
           "is too small for this response: steps of up to 1 / " + number_text(least) +
               " are longer than the stored modes are exact; expected " + number_text(penalty / least) +
@@ -117,7 +129,9 @@ hal::Result<void> push_gains(const ClassModes& modes, const std::vector<double>&
   part.rank = padded(modes.count);
   const double least = *std::min_element(penalties.begin(), penalties.end());
   const Refinement refinement = refine(modes, least, basis_share);
-  if (!(refinement.rounding <= unsafe_rounding)) return tl::unexpected(too_long_steps(modes, least, basis_share));
+  if (!(refinement.rounding <= unsafe_rounding && keeps_strongest(modes, least, basis_share))) {
+    return tl::unexpected(too_long_steps(modes, least, basis_share));
+  }
   part.refined = refinement.refined;
   const double safe = 1.0 / (1.0 + std::ceil(refinement.rounding * steps_of_rounding) / steps_of_rounding);
   for (const double penalty : penalties) {

@@ -11,6 +11,7 @@
 #include "recon/problem/number_text.hpp"
 #include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
+#include "recon/setup/row_norms.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -37,10 +38,11 @@ struct ClassNorms {
   double inverse = 0.0;
 };
 
-/// matrix becomes (matrix + rho I)^-1; false when it is not positive definite.
-bool invert(Matrix& matrix, double rho, ClassNorms& norms) {
+/// matrix becomes (S (matrix + rho I) S)^-1, S the diagonal `scale`, empty: I; false when it is not positive definite.
+bool invert(Matrix& matrix, double rho, const Eigen::VectorXd& scale, ClassNorms& norms) {
   if (matrix.size() == 0) return true;
   matrix.diagonal().array() += rho;
+  if (scale.size() > 0) matrix = (scale.asDiagonal() * matrix * scale.asDiagonal()).eval();
   norms.matrix = largest_eigenvalue(matrix);
   Eigen::LLT<Eigen::Ref<Matrix>> factor(matrix);
   if (factor.info() != Eigen::Success) return false;
@@ -65,13 +67,26 @@ hal::Result<void> check_condition(const std::vector<ClassNorms>& classes, bool d
                        " or more (for tikhonov, rho is lambda), or double precision");
 }
 
-hal::Result<void> invert_blocks(ParityGram& gram, double rho, double rounding, const Progress& progress) {
+/// Those of block c's orbits, whose rows all have the scale of the first.
+Eigen::VectorXd scale_of_class(const ParityClasses& classes, std::size_t c, const std::vector<double>& scale) {
+  if (scale.empty()) return {};
+  Eigen::VectorXd of_class(classes.order(c));
+  const auto& orbits = classes.orbits();
+  for (std::size_t orbit = 0; orbit < orbits.size(); ++orbit) {
+    const int at = classes.position(c, static_cast<int>(orbit));
+    if (at >= 0) of_class[at] = scale[static_cast<std::size_t>(orbits[orbit].first)];
+  }
+  return of_class;
+}
+
+hal::Result<void> invert_blocks(ParityGram& gram, double rho, const std::vector<double>& scale, double rounding,
+                                const Progress& progress) {
   std::vector<ClassNorms> norms(gram.classes().count());
   std::atomic<bool> definite{true};
   const bool inverted = on_all_cores(static_cast<int>(gram.classes().count()), "inverse", progress, [&] {
     return [&](int c) {
       const auto at = static_cast<std::size_t>(c);
-      if (!invert(gram.block(at), rho, norms[at])) definite = false;
+      if (!invert(gram.block(at), rho, scale_of_class(gram.classes(), at, scale), norms[at])) definite = false;
     };
   });
   if (inverted) return check_condition(norms, definite, rho, rounding);
@@ -94,7 +109,8 @@ hal::Result<std::vector<T>> packed_inverse(const Response& seeing, MetricKind me
   ParityGram gram(seeing, metric);
   constexpr double rounding = 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon());
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
-  if (auto done = invert_blocks(gram, rho, rounding, progress); !done) return tl::unexpected(done.error());
+  if (auto done = invert_blocks(gram, rho, loud_row_scale(seeing), rounding, progress); !done)
+    return tl::unexpected(done.error());
   std::vector<T> packed;
   packed.reserve(factor_size(gram.classes()));
   for (std::size_t c = 0; c < gram.classes().count(); ++c) {

@@ -23,7 +23,7 @@ enum class MetricKind : std::uint8_t { identity, smoothing };
 }
 
 /// What makes a frame cheap, made in double, kept in float32, and worth storing: it is the slow part of setting up a
-/// solver. Either the inverse (A K0^-1 A' + rho I)^-1 of the seeing rows, a packed upper triangle by rows for each
+/// solver. Either the inverse packed_inverse() of the seeing rows, a packed upper triangle by rows for each
 /// parity class, one after the other; or, for pdhg, the leading modes of A A' (recon/setup/leading_modes.hpp).
 struct Factor {
   double rho = 0.0;           ///< of an inverse; modes serve every rho
@@ -39,10 +39,10 @@ class ParityClasses;
 /// Values that the triangles of all classes take.
 [[nodiscard]] std::size_t factor_size(const ParityClasses& classes) noexcept;
 
-/// (A K0^-1 A' + rho I)^-1 computed in double, packed as Factor::values are, rounded once to T. `seeing` has no blind
-/// rows; rho > 0.
-/// Errors: interrupted; out_of_range when rho is too small for the matrix to be inverted in double or its inverse to
-/// be kept in T (condition number times rounding error of T above a half).
+/// (S (A K0^-1 A' + rho I) S)^-1, S the loud_row_scale() (recon/setup/row_norms.hpp), computed in double, packed as
+/// Factor::values are, rounded once to T. `seeing` has no blind rows; rho > 0. Errors: interrupted; out_of_range when
+/// rho is too small for the matrix to be inverted in double or its inverse to be kept in T (condition number times
+/// rounding error of T above a half).
 template <class T>
 [[nodiscard]] hal::Result<std::vector<T>> packed_inverse(const Response& seeing, MetricKind metric, double rho,
                                                          const Progress& progress);

@@ -7,21 +7,23 @@
 
 #include "recon/setup/factor_check.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
+#include "recon/setup/row_norms.hpp"
 
 namespace compueye::recon {
 
 template <class T>
-core::ClassInverse<T> make_inverse(const ParityClasses& classes, const T* values, KeptTables& kept) {
+core::ClassInverse<T> make_inverse(const ParityClasses& classes, const std::vector<double>& scale, const T* values,
+                                   KeptTables& kept) {
   core::ClassInverse<T> inverse;
   inverse.order = static_cast<std::size_t>(classes.rows());
   inverse.classes = classes.count();
-  const bool whole = classes.count() == 1;
+  const bool whole = classes.count() == 1 && scale.empty();
   std::vector<std::int32_t> index;
   std::vector<T> share;
   for (std::size_t c = 0; c < classes.count() && !whole; ++c) {
     for (int m = 0; m < classes.rows(); ++m) {
       index.push_back(classes.index(c, m));
-      share.push_back(static_cast<T>(classes.share(c, m)));
+      share.push_back(static_cast<T>(classes.share(c, m) * (scale.empty() ? 1.0 : scale[static_cast<std::size_t>(m)])));
     }
   }
   const std::int32_t* indices = kept.keep(std::move(index));
@@ -53,7 +55,7 @@ hal::Result<void> fill_inverse(SetUp<T>& from, const ParityClasses& classes, cor
   } else {
     values = from.kept.keep(TRY(packed_inverse<T>(from.seeing, from.factor.metric, from.plan.rho, from.progress)));
   }
-  problem.inverse = make_inverse(classes, values, from.kept);
+  problem.inverse = make_inverse(classes, loud_row_scale(from.seeing), values, from.kept);
   if constexpr (std::is_same_v<T, float>) {
     if (tried && !inverts(problem.inverse, from.seeing, problem.metric, from.plan.rho)) return not_a_factor();
   }
@@ -66,8 +68,10 @@ ParityClasses classes_of(const SetUp<T>& from) {
   return ParityClasses(from.seeing.rows(), find_mirror_symmetry(from.seeing));
 }
 
-template core::ClassInverse<float> make_inverse(const ParityClasses&, const float*, KeptTables&);
-template core::ClassInverse<double> make_inverse(const ParityClasses&, const double*, KeptTables&);
+template core::ClassInverse<float> make_inverse(const ParityClasses&, const std::vector<double>&, const float*,
+                                                KeptTables&);
+template core::ClassInverse<double> make_inverse(const ParityClasses&, const std::vector<double>&, const double*,
+                                                 KeptTables&);
 template hal::Result<void> fill_inverse(SetUp<float>&, const ParityClasses&, core::FactoredProblem<float>&);
 template hal::Result<void> fill_inverse(SetUp<double>&, const ParityClasses&, core::FactoredProblem<double>&);
 template ParityClasses classes_of(const SetUp<float>&);

@@ -6,9 +6,11 @@
 
 namespace compueye::recon {
 
-/// A view of `values`, which are packed as Factor::values are and outlive it.
+/// A view of `values`, which are packed as Factor::values are and outlive it, scaled back by `scale`, the
+/// loud_row_scale() that they were made with.
 template <class T>
-[[nodiscard]] core::ClassInverse<T> make_inverse(const ParityClasses& classes, const T* values, KeptTables& kept);
+[[nodiscard]] core::ClassInverse<T> make_inverse(const ParityClasses& classes, const std::vector<double>& scale,
+                                                 const T* values, KeptTables& kept);
 
 /// A problem with what all methods share and the cached inverse, the stored one or a new one. In float32 it is
 /// from.factor that owns it. Errors: those of fill_shared() and packed_inverse(), stale.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "recon/setup/row_norms.hpp"
 #include "recon/setup/solver_row.hpp"
 
 namespace compueye::recon {
@@ -47,12 +48,12 @@ double resolve_rho(const Response& response, const Objective& objective, const P
   const double differences = squared_difference_norm(response);
   // Fields that cover the picture evenly have no edge at all.
   const double by_edges =
-      share_for_differences * std::sqrt(response.squared_norm()) * std::sqrt(std::max(differences, 0.0));
+      share_for_differences * std::sqrt(bulk_squared_norm(response)) * std::sqrt(std::max(differences, 0.0));
   return by_edges > 1e-3 * by_columns * response.cols() ? by_edges / response.cols() : by_columns;
 }
 
 double rho_by_columns(const Response& response) {
-  return share_of_column_norm * response.squared_norm() / response.cols();
+  return share_of_column_norm * bulk_squared_norm(response) / response.cols();
 }
 
 void push_geometric(double from, double to, int count, std::vector<double>& values) {

@@ -23,7 +23,7 @@ namespace compueye::recon {
 /// rule gives 20: after 60 iterations at sigma .1 the phantom has half the NMSE of rho 20, at sigma .3 three quarters.
 /// The objective alone would rather have 20 at sigma .3 and 4 at sigma .05. On the 8x8 eyes both rules agree.
 ///
-/// All scale as A^2 does, and not with the unit of x.
+/// All scale as A^2 does, and not with the unit of x. ||A||_F^2 is that of the bulk of the rows (row_norms.hpp).
 [[nodiscard]] double resolve_rho(const Response& response, const Objective& objective, const Plan& plan);
 
 /// The first of the rules.

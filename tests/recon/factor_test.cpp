@@ -52,7 +52,7 @@ void check_against_direct(const recon::Response& a, double rho) {
   const recon::ParityClasses classes(a.rows(), recon::find_mirror_symmetry(a));
   CHECK(packed->size() == recon::factor_size(classes));
   recon::KeptTables kept;
-  const auto h = recon::make_inverse(classes, packed->data(), kept);
+  const auto h = recon::make_inverse(classes, {}, packed->data(), kept);
   const auto order = static_cast<std::size_t>(a.rows());
   std::vector<double> scratch(h.scratch_size()), row(order), y(order);
   Random random(45);

@@ -26,7 +26,7 @@ void multiply_class(const ClassInverse<T>& h, const typename ClassInverse<T>::Pa
 
 template <class T>
 void multiply_of(const ClassInverse<T>& h, const T* x, T* y, T* scratch) noexcept {
-  if (h.classes == 1) return multiply(h.parts[0].matrix, x, y);
+  if (h.is_whole()) return multiply(h.parts[0].matrix, x, y);
   // Orders of the classes add up to the whole one's.
   std::size_t first[5] = {};
   for (std::size_t c = 0; c < h.classes; ++c) first[c + 1] = first[c] + h.parts[c].matrix.order;
@@ -40,7 +40,7 @@ void multiply_of(const ClassInverse<T>& h, const T* x, T* y, T* scratch) noexcep
 
 template <class T>
 void expand_row_of(const ClassInverse<T>& h, std::size_t i, T* row, T* scratch) noexcept {
-  if (h.classes == 1) return expand_row(h.parts[0].matrix, i, row);
+  if (h.is_whole()) return expand_row(h.parts[0].matrix, i, row);
   for (std::size_t m = 0; m < h.order; ++m) row[m] = T(0);
   for (std::size_t c = 0; c < h.classes; ++c) {
     const auto& part = h.parts[c];

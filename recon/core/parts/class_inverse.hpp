@@ -35,7 +35,8 @@ struct ClassInverse {
   struct Part {
     PackedSymmetric<T> matrix;
     const std::int32_t* index = nullptr;  ///< order of them: a row's place in the matrix, -1 for none; null: its own
-    const T* share = nullptr;             ///< order of them: entry of the class's unit vector at a row
+    const T* share = nullptr;             ///< order of them: entry of the class's unit vector at a row, times what the
+                                          ///< matrix was scaled by there (recon/setup/row_norms.hpp)
   };
 
   std::size_t order = 0;  ///< rows of A
@@ -44,7 +45,9 @@ struct ClassInverse {
   Crew crew = {};  ///< shares classes
 
   /// Elements of T that multiply() and expand_row() want as scratch.
-  [[nodiscard]] std::size_t scratch_size() const noexcept { return classes > 1 ? 2 * order : 0; }
+  [[nodiscard]] std::size_t scratch_size() const noexcept { return is_whole() ? 0 : 2 * order; }
+  /// One matrix with every row in its own place, as it is.
+  [[nodiscard]] bool is_whole() const noexcept { return classes == 1 && parts[0].index == nullptr; }
 };
 
 /// y = H x; reads every stored value once. Classes are added in ascending order.

@@ -10,6 +10,8 @@
 namespace compueye::recon::core {
 namespace {
 
+constexpr double dwarfed = 16.0;
+
 /// A copy z of x, or of Psi x, with its scaled dual u and its proximal map.
 template <class T>
 struct Copy {
@@ -115,6 +117,7 @@ class Admm : public MadeInWorkspace {
     const T* penalised = sparse_basis_ ? coefficients_ : x_;
     const double penalty = reweights() ? weighted_penalty() : l1_penalty(problem_, penalised);
     evaluate(step_.samples(), x_, penalty, step_.row_scratch(), info);
+    if (duals_dwarf_picture()) prefer_sparse_copy(info);
     residuals_.tell(info);
     const double gap = reweights() ? -1.0 : gap_.measure(step_.samples(), x_, basis_dual(), info.objective);
     judge_by_gap(problem_, gap_, gap, still_split, info);
@@ -125,6 +128,29 @@ class Admm : public MadeInWorkspace {
   [[nodiscard]] const T* picture() const noexcept { return x_; }
 
  private:
+  /// A dual of lambda / rho leaves its rounding in every pixel, and so in every coefficient that should be zero.
+  [[nodiscard]] bool duals_dwarf_picture() const noexcept {
+    if (!sparse_basis_ || !problem_.constrained || smooth_) return false;
+    T largest = T(0);
+    for (std::size_t k = 0; k < n_; ++k) {
+      const T size = x_[k] < T(0) ? -x_[k] : x_[k];
+      if (size > largest) largest = size;
+    }
+    return in_basis_.threshold > static_cast<T>(dwarfed) * largest;
+  }
+
+  /// The copy whose zeros are zeros, with its pixels brought back within the constraint, where its objective is lower.
+  void prefer_sparse_copy(FrameInfo& info) noexcept {
+    synthesise(problem_.psi, in_basis_.z, before_, scratch_);
+    for (std::size_t k = 0; k < n_; ++k) before_[k] = prox_l1_box(before_[k], T(0), problem_.lo, problem_.hi);
+    analyse(problem_.psi, before_, coefficients_, scratch_);
+    FrameInfo other = info;
+    evaluate(step_.samples(), before_, l1_penalty(problem_, coefficients_), step_.row_scratch(), other);
+    if (!(other.objective < info.objective)) return;
+    info = other;
+    for (std::size_t k = 0; k < n_; ++k) x_[k] = before_[k];
+  }
+
   [[nodiscard]] bool reweights() const noexcept { return problem_.l1_reweighting > T(0); }
 
   /// Pixels that the first pass found lit are shrunk little in the second, dark ones twice as much as before.

@@ -8,6 +8,7 @@ namespace compueye::recon::core {
 namespace {
 
 constexpr double most_gap = 1e-3;  // of the objective
+constexpr int most_refined = 6;
 
 template <class T>
 class Tikhonov {
@@ -20,23 +21,33 @@ class Tikhonov {
 
   bool begin(const float* y, const float* weights) noexcept { return step_.begin(y, weights); }
 
-  void iterate(int) noexcept {
-    for (std::size_t k = 0; k < problem_.pixels(); ++k) solution_[k] = T(0);
-    step_.apply(solution_);
-  }
+  void iterate(int) noexcept { solve(); }
 
   bool finish(FrameInfo& info) noexcept {
     info.iterations = 1;
-    const double squared_norm = static_cast<double>(dot(solution_, solution_, problem_.pixels()));
-    evaluate(step_.samples(), solution_, 0.5 * static_cast<double>(problem_.lambda) * squared_norm, step_.row_scratch(),
-             info);
-    info.health = gap() <= most_gap * info.objective ? Health::converged : Health::budget_used;
-    return true;
+    for (int refined = 0;; ++refined) {
+      judge(info);
+      if (info.health == Health::converged || refined == most_refined) return true;
+      solve();
+    }
   }
 
   [[nodiscard]] const T* picture() const noexcept { return solution_; }
 
  private:
+  /// Once more is a step of iterative refinement.
+  void solve() noexcept {
+    for (std::size_t k = 0; k < problem_.pixels(); ++k) solution_[k] = T(0);
+    step_.apply(solution_);
+  }
+
+  void judge(FrameInfo& info) noexcept {
+    const double squared_norm = static_cast<double>(dot(solution_, solution_, problem_.pixels()));
+    evaluate(step_.samples(), solution_, 0.5 * static_cast<double>(problem_.lambda) * squared_norm, step_.row_scratch(),
+             info);
+    info.health = gap() <= most_gap * info.objective ? Health::converged : Health::budget_used;
+  }
+
   /// ||A'W (y - A x) - lambda x||^2 / (2 lambda), the duality gap at the dual u = W (y - A x): what rounding in the
   /// inverse has left of the picture.
   [[nodiscard]] double gap() noexcept {
