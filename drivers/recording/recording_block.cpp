@@ -29,7 +29,7 @@ hal::BlockFlags unpacked(unsigned bits) noexcept {
 bool within_limits(const BlockHead& head) noexcept {
   const RecordedBooks& books = head.books;
   return head.arrival_ns >= 0 && head.arrival_ns <= most_arrival_ns && head.frame <= most_count &&
-         books.index <= most_count && books.unrecorded <= most_count &&
+         books.index <= most_count && books.unrecorded <= most_count && books.estimated <= most_count &&
          std::all_of(books.dropped.begin(), books.dropped.end(), [](std::uint64_t n) { return n <= most_count; });
 }
 
@@ -42,7 +42,7 @@ void encode_head(const BlockHead& head, std::size_t length, std::byte* at) noexc
   store_little(at + 8, static_cast<std::uint32_t>(length));
   store_little(at + 12, head.config_id);
   store_little(at + 16, head.books.index);
-  store_little(at + 24, head.frame);
+  store_little(at + 24, head.kind == BlockKind::frame ? head.frame : head.books.estimated);
   store_little(at + 32, head.t_ns);
   store_little(at + 40, head.arrival_ns);
   store_little(at + 48, head.books.unrecorded);
@@ -128,7 +128,7 @@ std::optional<BlockHead> decode_head(std::span<const std::byte, block_head_bytes
   }
   head.config_id = load_little<std::uint32_t>(at + 12);
   head.books.index = load_little<std::uint64_t>(at + 16);
-  head.frame = load_little<std::uint64_t>(at + 24);
+  (head.kind == BlockKind::frame ? head.frame : head.books.estimated) = load_little<std::uint64_t>(at + 24);
   head.t_ns = load_little<std::int64_t>(at + 32);
   head.arrival_ns = load_little<std::int64_t>(at + 40);
   head.books.unrecorded = load_little<std::uint64_t>(at + 48);

@@ -27,6 +27,7 @@ struct RecordedBooks {
   std::uint64_t index = 0;       ///< frame blocks before this one
   std::uint64_t unrecorded = 0;  ///< frames that were delivered and did not get into the file: its writer was too slow
   std::array<std::uint64_t, recorded_reasons> dropped{};  ///< the source's own, by hal::DropReason
+  std::uint64_t estimated = 0;                            ///< of those; end block only
 };
 
 /// Head of a block: everything but the samples.

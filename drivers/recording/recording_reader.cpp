@@ -188,6 +188,7 @@ hal::FrameAccount RecordingReader::account() const noexcept {
   hal::FrameAccount account;
   account.delivered = delivered_;
   std::copy(last_.dropped.begin(), last_.dropped.end(), account.dropped.begin());
+  account.estimated = std::min(last_.estimated, account.total_dropped());
   account.drops(hal::DropReason::transport_gap) += last_.unrecorded;
   account.drops(hal::DropReason::corrupt) += damage_.blocks;
   const std::uint64_t numbered = last_frame_ ? *last_frame_ + 1 : 0;

@@ -166,6 +166,7 @@ hal::Result<void> RecordingWriter::finish(Ending ending, std::int64_t at_ns, con
   head.ending = ending;
   head.arrival_ns = std::clamp(at_ns, std::int64_t{0}, most_arrival_ns);
   head.books = books_of(account, frames_, unrecorded);
+  head.books.estimated = account.estimated;
   hal::Result<void> done;
   std::array<std::byte, end_block_bytes> bytes{};
   if (!encode_end_block(head, bytes)) {

@@ -131,7 +131,8 @@ Figures RecordingSummary::report(const RecordingReader& reader) const {
   if (!reader.header().settings.empty()) f.say("settings: " + one_line(reader.header().settings) + "\n");
   f.tell(
       "frames: {frames.produced} produced = {frames.delivered} recorded + {frames.dropped:sum} dropped"
-      "[ ({frames.dropped})][; {unrecorded} of them were too much for the recorder]\n"
+      "[ ({frames.dropped})][, {frames.estimated} of them by estimate][; {unrecorded} of them were too much for the "
+      "recorder]\n"
       "[gaps: {gaps.count} with {gaps.missing_frames} frames missing, before frame]");
   for (const FrameGap& gap : first_gaps_) f.say(fmt::format(" {} ({})", gap.before_frame, gap.frames));
   if (gaps_ > 0) f.say(gaps_ > first_gaps_.size() ? " ...\n" : "\n");

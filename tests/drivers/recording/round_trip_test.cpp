@@ -52,6 +52,21 @@ TEST_CASE("what is recorded is read back bit for bit, with its books") {
   }
 }
 
+TEST_CASE("a recording's end says how many of the dropped frames are estimated") {
+  const auto estimated_after = [](std::uint64_t estimated) {
+    Film film = random_film(3, 4, 12, 6);
+    film.last.estimated = estimated;
+    auto reader = reader_of(recorded(film));
+    REQUIRE(reader);
+    while (reader->next()) CHECK(reader->account().estimated == 0);
+    return reader->account().estimated;
+  };
+  CHECK(estimated_after(0) == 0);
+  CHECK(estimated_after(2) == 2);
+  // Never more than there are.
+  CHECK(estimated_after(most_count) < 1'000'000);
+}
+
 TEST_CASE("neither writing nor reading frames uses the heap") {
   const TemporaryFolder folder;
   const Film film = random_film(5, 640, 12, 40);
