@@ -81,7 +81,7 @@ constexpr std::array<FolderRule, 26> rules{{
     {"tools", none, none, false, none, false, "tools hold scripts; a program is a subcommand of compueye"},
 }};
 
-constexpr std::array<Library, 15> known_libraries{{
+constexpr std::array<Library, 16> known_libraries{{
     {"tl-expected", "tl/expected.hpp", "tl::expected"},
     {"Eigen", "Eigen/ unsupported/Eigen/", "Eigen3::Eigen"},
     {"Spectra", "Spectra/", "Spectra::Spectra"},
@@ -92,6 +92,7 @@ constexpr std::array<Library, 15> known_libraries{{
     {"fmt", "fmt/", "fmt::fmt"},
     {"nlohmann-json", "nlohmann/", "nlohmann_json::nlohmann_json"},
     {"doctest", "doctest/", "doctest::doctest"},
+    {"rapidcheck", "rapidcheck.h rapidcheck/", "rapidcheck"},
     {"sqlite", "sqlite3.h", "SQLite::SQLite3 PkgConfig::SQLITE3"},
     {"libusb", "libusb-1.0/ libusb.h", "PkgConfig::LIBUSB"},
     {"hidapi", "hidapi/ hidapi.h", "PkgConfig::HIDAPI"},
