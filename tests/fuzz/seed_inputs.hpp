@@ -13,5 +13,6 @@ namespace compueye::fuzz {
 [[nodiscard]] std::vector<std::vector<std::byte>> cobs_seeds();
 [[nodiscard]] std::vector<std::vector<std::byte>> recording_seeds();
 [[nodiscard]] std::vector<std::vector<std::byte>> board_file_seeds();
+[[nodiscard]] std::vector<std::vector<std::byte>> reconstruct_seeds();
 
 }  // namespace compueye::fuzz

@@ -16,7 +16,8 @@ struct Target {
 };
 constexpr Target targets[] = {{"packet_stream", packet_stream_seeds}, {"descriptor", descriptor_seeds},
                               {"hid_report", hid_report_seeds},       {"cobs", cobs_seeds},
-                              {"recording", recording_seeds},         {"board_file", board_file_seeds}};
+                              {"recording", recording_seeds},         {"board_file", board_file_seeds},
+                              {"reconstruct", reconstruct_seeds}};
 
 bool write(const std::filesystem::path& file, const std::vector<std::byte>& bytes) {
   std::ofstream out(file, std::ios::binary);
