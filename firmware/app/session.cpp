@@ -97,6 +97,7 @@ hal::Result<void> Session::seal() {
   const std::lock_guard lock(mutex_);
   TRY(check_stop());
   on_signal_ = OnSignal::ends_in_order;
+  working_ = true;
   return {};
 }
 
@@ -141,7 +142,7 @@ bool Session::seen(int signal) {
     return true;
   }
   const std::chrono::nanoseconds since(now_ns - *asked_ns_);
-  const bool in_order = on_signal_ == OnSignal::ends_in_order;
+  const bool in_order = on_signal_ == OnSignal::ends_in_order && working_.load(std::memory_order_relaxed);
   if (asks_to_stop(signal) && since >= limits_.same_request) {
     leave(128 + signal, in_order ? hal::Error{hal::ErrorCode::interrupted,
                                               {},
@@ -173,6 +174,7 @@ void Session::leave(int code, const hal::Error& why) {
 recon::Progress Session::progress() {
   if (!reporter_) reporter_.emplace(clock_);
   return [this](std::string_view what, double done, double total) {
+    working_.store(true, std::memory_order_relaxed);
     reporter_->update(what, done, total);
     return !stop_requested_.load(std::memory_order_relaxed);
   };

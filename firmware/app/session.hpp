@@ -39,7 +39,8 @@ namespace compueye::firmware {
 /// exit code 128 + its number; a repetition within `SignalLimits::same_request` is no second one.
 enum class OnSignal : std::uint8_t {
   /// The command is asked to end, and does so by itself with what it has. What does not end within a limit (a reader
-  /// that sleeps, a disk that hangs) is ended from here.
+  /// that sleeps, a disk that hangs) is ended from here. Until it first tells its progress it has nothing, and gives
+  /// up.
   ends_in_order,
   /// The same for a command that computes once and writes at the end, with a short limit: whatever takes longer than
   /// that to notice (one very long frame, reading a huge file) is left, and nothing is written.
@@ -129,6 +130,7 @@ class Session {
   std::optional<ProgressReporter> reporter_;
 
   OnSignal on_signal_ = OnSignal::gives_up;
+  std::atomic<bool> working_{false};  ///< on what it would end with
   sigset_t signals_{};
   std::atomic<bool> stop_requested_{false};
   std::mutex mutex_;

@@ -1,6 +1,7 @@
 #include "firmware/app/commands/run_source.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
@@ -11,6 +12,7 @@
 #include "drivers/recording/recording_file.hpp"
 #include "firmware/eye/settings/board_lines.hpp"
 #include "firmware/eye/source_list.hpp"
+#include "firmware/files/output_target.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -43,6 +45,7 @@ std::int64_t unix_minus(const hal::Clock& clock) {
 }  // namespace
 
 Result<void> check_new_recording(const std::string& path) {
+  if (named_stream(path)) return {};
   std::error_code ignored;
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
   if (std::filesystem::is_regular_file(path, ignored)) {
@@ -57,7 +60,7 @@ Result<void> check_new_recording(const std::string& path) {
 Result<std::unique_ptr<recording::RecordingSource>> with_recorder(const RecordingRequest& request, const Board& board,
                                                                   hal::SampleSource& source, hal::Clock& clock) {
   recording::RecordingSettings settings;
-  settings.path = request.path;
+  settings.path = named_stream(request.path) == STDOUT_FILENO ? "-" : request.path;
   settings.settings = header_text(request, board);
   settings.unix_minus_clock_ns = unix_minus(clock);
   settings.when_full = request.lossless ? recording::WhenFull::wait : recording::WhenFull::skip;

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
+#include <fcntl.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <thread>
@@ -203,5 +205,29 @@ TEST_CASE("record and replay show how they are used") {
     CHECK(ended.exit_code == 0);
     CHECK(contains(ended.out, "compueye " + command));
     CHECK(contains(ended.out, "--json"));
+  }
+}
+
+TEST_CASE("a recording to standard output is nothing but the recording, by whatever name") {
+  const CopiedBoard board;
+  for (const char* const name : {"-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"}) {
+    CAPTURE(name);
+    for (const bool run : {false, true}) {
+      const auto file = board.outside("copy.rec");
+      const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+      REQUIRE(out >= 0);
+      const Ended ended = Program(run ? board.run_arguments({"--frames", "3", "--lossless", "--record", name})
+                                      : std::vector<std::string>{"record", "--board", board.path().string(), "--frames",
+                                                                 "3", "--lossless", "--out", name},
+                                  out)
+                              .wait();
+      ::close(out);
+      REQUIRE_MESSAGE(ended.exit_code == 0, ended.err);
+      const auto told = replay(file);
+      CHECK(told["frames"]["delivered"] == 3);
+      CHECK(told["end"]["why"] == (run ? "end of stream" : "stopped"));
+      CHECK(told["damage"]["bytes"] == 0);
+      CHECK(names(ended.err, "frames"));
+    }
   }
 }

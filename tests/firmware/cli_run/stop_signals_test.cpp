@@ -180,6 +180,31 @@ TEST_CASE("a pipe that nobody reads is refused before the set-up") {
   }
 }
 
+TEST_CASE("a pipe that nobody writes is waited for until the first signal") {
+  const CopiedBoard board;
+  const std::string at = board.path().string(), pipe = board.outside("pipe").string();
+  const std::string out = board.outside("out").string();
+  const std::string array = board.outside("pipe.npy").string();
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  REQUIRE(::mkfifo(array.c_str(), 0600) == 0);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"run", "--board", at, "--frames", "0", "--scene", pipe},
+        std::vector<std::string>{"record", "--board", at, "--scene", pipe, "--out", out},
+        std::vector<std::string>{"compare", "--board", at, "--scene", pipe},
+        std::vector<std::string>{"simulate", "--board", at, "--scene", pipe, "--out", out},
+        std::vector<std::string>{"reconstruct", "--response", array, "--samples", array, "--size", "16x16", "--sigma",
+                                 "1"}}) {
+    CAPTURE(arguments[0]);
+    Program program(arguments);
+    REQUIRE(comes_true(program, [&] { return program.hears(SIGTERM); }));
+    program.signal(SIGTERM);
+    const Ended ended = program.wait();
+    CHECK(ended.exit_code == 1);
+    CHECK(contains(ended.err, "nothing was written"));
+    CHECK_FALSE(std::filesystem::exists(out));
+  }
+}
+
 TEST_CASE("a second signal ends at once what the first one could not") {
   const CopiedBoard board;
   const auto pipe = board.outside("pipe");
