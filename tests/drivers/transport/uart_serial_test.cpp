@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "drivers/device/conformance.hpp"
 #include "drivers/device/stream_promises.hpp"
 #include "drivers/protocol/crc32c.hpp"
 #include "drivers/protocol/little_endian.hpp"
@@ -31,12 +33,20 @@ namespace {
 
 constexpr std::int64_t long_enough_ns = 60'000'000'000;
 
-/// The firmware of an eye at the other end of a socket: it answers what it is asked, and behind a START sends what half
-/// a second of its own time makes.
+/// What its time is.
+enum class Pace : std::uint8_t {
+  asked,  ///< a millisecond a request, and behind a START half a second at once
+  real,   ///< the host's
+};
+
+/// The firmware of an eye at the other end of a socket: it answers what it is asked, and streams.
 class Firmware {
  public:
-  explicit Firmware(bool noisy = false)
-      : noisy_(noisy), device_(DeviceEmulator::create(eye_settings(&usb_bus), shown(12), now_ns_).value()) {
+  explicit Firmware(bool noisy = false, Pace pace = Pace::asked)
+      : noisy_(noisy),
+        pace_(pace),
+        now_ns_(pace == Pace::real ? clock_.now_ns() : 10'000'000'000),
+        device_(DeviceEmulator::create(eye_settings(&usb_bus), shown(12), now_ns_).value()) {
     int ends[2] = {-1, -1};
     REQUIRE(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0);
     file_ = ends[0];
@@ -59,6 +69,13 @@ class Firmware {
     std::vector<std::byte> chunk(4096);
     CobsDecoder decoder(4096);
     for (;;) {
+      if (pace_ == Pace::real) {
+        pollfd waiting{file_, POLLIN, 0};
+        const int asked = ::poll(&waiting, 1, 1);
+        now_ns_ = clock_.now_ns();
+        send_frames();
+        if (asked == 0) continue;
+      }
       const ssize_t got = ::read(file_, chunk.data(), chunk.size());
       if (got <= 0) return;
       decoder.feed(std::span<const std::byte>(chunk).first(static_cast<std::size_t>(got)));
@@ -77,11 +94,14 @@ class Firmware {
                              : what == number(Request::ping)       ? PingReply::bytes
                                                                    : 0;
     std::vector<std::byte> data(room);
-    now_ns_ += 1'000'000;
+    now_ns_ = pace_ == Pace::real ? clock_.now_ns() : now_ns_ + 1'000'000;
     const auto done = device_.control(now_ns_, what, covered.subspan(1), data);
     const bool taken = done.outcome == DeviceEmulator::Outcome::done;
     // Its stream is faster than its answers.
-    if (taken && what == number(Request::start)) stream();
+    if (taken && what == number(Request::start) && pace_ == Pace::asked) {
+      now_ns_ += 500'000'000;
+      send_frames();
+    }
     std::vector<std::byte> reply{static_cast<std::byte>(what), taken ? std::byte{0} : std::byte{3}};
     if (taken && room > 0) {
       reply.insert(reply.end(), data.begin(), data.begin() + static_cast<std::ptrdiff_t>(done.bytes));
@@ -90,8 +110,7 @@ class Firmware {
     send_frame(reply, true);
   }
 
-  void stream() {
-    now_ns_ += 500'000'000;
+  void send_frames() {
     std::vector<std::byte> bytes(1U << 20U);
     bytes.resize(device_.read(now_ns_, bytes).bytes);
     PacketStream packets(device_.descriptor().packet_limits());
@@ -127,7 +146,9 @@ class Firmware {
   }
 
   bool noisy_;
-  std::int64_t now_ns_ = 10'000'000'000;
+  Pace pace_;
+  hal::MonotonicClock clock_;
+  std::int64_t now_ns_;
   DeviceEmulator device_;
   int file_ = -1, host_ = -1;
   std::thread thread_;
@@ -175,6 +196,20 @@ TEST_CASE("what a UART streams keeps the promises of the page") {
     stream.feed(std::span<const std::byte>(chunk).first(*got));
   }
   CHECK(stream.broken().empty());
+}
+
+TEST_CASE("an eye on a UART that keeps every promise is found to by a whole run of conformance") {
+  const Firmware firmware(false, Pace::real);
+  UartTransport transport(firmware.host(), "socket");
+  hal::MonotonicClock clock;
+  const auto rows = device::check_conformance(transport, clock, uart_bus);
+  REQUIRE_MESSAGE(rows.has_value(), rows.error().text());
+  CHECK(rows->size() > 10);
+  for (const device::ConformanceRow& row : *rows) {
+    CAPTURE(row.name);
+    CAPTURE(row.why);
+    CHECK(row.verdict != device::ConformanceRow::Verdict::fail);
+  }
 }
 
 TEST_CASE("an eye that hangs up is gone, one that says nothing is waited for until the deadline") {
