@@ -1,12 +1,12 @@
 #include "recon/lambda_by_risk.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
 
+#include "hal/try.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/setup/solver_row.hpp"
 
@@ -17,119 +17,193 @@ using hal::ErrorCode;
 using hal::fail;
 using hal::Result;
 
-/// Upwards more than down: the rule errs on the small side, for the sake of pictures that are not sparse.
-constexpr std::array factors{1.0, 0.25, 4.0, 16.0, 64.0, 256.0};
+constexpr double step = 4.0;
+constexpr int steps_down = 3, steps_up = 9;
+/// The lowest is tried only where the one above it won.
+constexpr int sure_steps_down = 2;
+constexpr int most_trials = 1 + steps_up + steps_down + 2;
 /// Of sigma: large enough for float32 to see, small enough for the picture to follow in proportion.
 constexpr double probe_size = 0.3;
-constexpr double standard_errors = 2.0;
+/// Both chosen by bench/lambda_rule --family --tuning.
+constexpr double standard_errors = 1.0, coefficients_per_channel = 0.3;
+constexpr int least_cold_iterations = 60;
+/// Of the samples' squares.
+constexpr double nothing_left = 1e-4;
 
 /// Signs that nothing in an eye's lattice can be correlated with (SplitMix64's finaliser: Steele, Lea & Flood 2014).
-float sign_of(std::uint64_t channel) noexcept {
+double sign_of(std::uint64_t channel) noexcept {
   std::uint64_t z = (channel + 1) * 0x9E3779B97F4A7C15U;
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
-  return ((z ^ (z >> 31)) & 1U) != 0 ? 1.0F : -1.0F;
+  return ((z ^ (z >> 31)) & 1U) != 0 ? 1.0 : -1.0;
 }
+
+/// What one picture leaves of the samples.
+struct Explained {
+  std::vector<double> samples;  ///< A x
+  double penalty = 0.0;         ///< ||Psi x||_1
+};
 
 class RiskSearch {
  public:
-  RiskSearch(const Response& response, const Plan& plan, std::span<const float> y, double sigma,
+  RiskSearch(const Response& response, const Objective& objective, const Plan& plan, const NoisyFrame& frame,
              std::optional<Factor> factor, const Progress& progress)
       : response_(response),
+        objective_(objective),
         plan_(plan),
-        y_(y),
-        sigma_(sigma),
-        seeing_(response.seeing_rows()),
-        factor_(std::move(factor)),
+        frame_(frame),
+        weighs_l1_(plan.solver->lambda == LambdaUse::penalty && plan.l1_reweighting == 0.0),
+        probed_(frame.y.begin(), frame.y.end()),
         progress_(progress) {
-    for (std::size_t m = 0; m < y.size(); ++m) {
-      probed_.push_back(y[m] + static_cast<float>(probe_size * sigma) * sign_of(m));
+    found_.lambda = objective.lambda;
+    found_.factor = std::move(factor);
+    if (plan_.warm_start) plan_.iterations = std::max(plan_.iterations, least_cold_iterations);
+    plan_.warm_start = false;
+    plan_.measure_gap = false;
+    for (const std::int32_t row : response.seeing_rows()) {
+      const auto m = static_cast<std::size_t>(row);
+      const double weight = frame.weights.empty() ? 1.0 : double{frame.weights[m]};
+      if (!(weight > 0.0)) continue;
+      channels_.push_back({m, weight});
+      probed_[m] += static_cast<float>(probe_size * frame.sigma * sign_of(m) / std::sqrt(weight));
     }
+    noise_ = static_cast<double>(channels_.size()) * frame.sigma * frame.sigma;
   }
 
-  Result<LambdaByRisk> run(Objective objective) {
-    LambdaByRisk found{objective.lambda, {}, std::nullopt};
-    for (const double factor : factors) {
-      objective.lambda = found.lambda * factor;
-      if (auto tried = try_at(objective, found); !tried) return tl::unexpected(std::move(tried.error()));
-    }
-    const LambdaTrial best = *std::min_element(found.trials.begin(), found.trials.end(),
-                                               [](const auto& a, const auto& b) { return a.risk < b.risk; });
-    const double noise = sigma_ * sigma_ * std::sqrt(static_cast<double>(seeing_.size()));
-    if (found.trials.front().risk - best.risk > standard_errors * noise) found.lambda = best.lambda;
-    found.factor = std::move(factor_);
-    return found;
+  Result<LambdaByRisk> run() {
+    if (!(noise_ > 0.0)) return std::move(found_);
+    TRY(try_at(0));
+    for (int k = 1; k <= steps_up && !hopeless_; ++k) TRY(try_at(k));
+    for (int k = 1; k <= sure_steps_down; ++k) TRY(try_at(-k));
+    for (int k = sure_steps_down + 1; k <= steps_down && best().k == 1 - k; ++k) TRY(try_at(-k));
+    const double coarse = best().k;
+    TRY(try_at(coarse - .5));
+    TRY(try_at(coarse + .5));
+    found_.lambda = best().trial.lambda;
+    for (const Tried& one : tried_) found_.trials.push_back(one.trial);
+    return std::move(found_);
   }
 
  private:
-  Result<void> try_at(const Objective& objective, LambdaByRisk& found) {
-    const auto tried = static_cast<double>(found.trials.size());
-    if (progress_ && !progress_("lambda by risk", tried, factors.size())) {
+  struct Channel {
+    std::size_t row;
+    double weight;
+  };
+  struct Tried {
+    double k;
+    LambdaTrial trial;
+  };
+
+  /// What one standard error of the samples' noise is in risk.
+  [[nodiscard]] double slack() const noexcept {
+    return weighs_l1_ ? standard_errors * noise_ / std::sqrt(static_cast<double>(channels_.size())) : 0.0;
+  }
+
+  [[nodiscard]] double least_risk() const {
+    double least = tried_.front().trial.risk;
+    for (const Tried& one : tried_) least = std::min(least, one.trial.risk);
+    return least;
+  }
+
+  /// Of those whose risk the samples cannot tell from the least, the one with the most evidence.
+  [[nodiscard]] const Tried& best() const {
+    const double least = least_risk();
+    const Tried* best = nullptr;
+    for (const Tried& one : tried_) {
+      if (one.trial.risk > least + slack()) continue;
+      if (best == nullptr || one.trial.surprise < best->trial.surprise) best = &one;
+    }
+    return *best;
+  }
+
+  /// At the start times step^k. What only goes wrong away from the start is left out.
+  Result<void> try_at(double k) {
+    if (progress_ && !progress_("lambda by risk", static_cast<double>(tried_.size()), most_trials)) {
       return fail(ErrorCode::interrupted, "lambda", "was given up before it was chosen");
     }
-    auto solver = Reconstructor::create(response_, objective, plan_, factor_, progress_);
-    if (!solver) return tl::unexpected(std::move(solver.error()));
-    if (!factor_ && reusable_factor()) factor_ = solver->factor();
-    const auto seen = samples_of(*solver, y_), moved = samples_of(*solver, probed_);
-    if (!seen) return tl::unexpected(seen.error());
-    if (!moved) return tl::unexpected(moved.error());
-    double misfit = 0.0, followed = 0.0;
-    for (const std::int32_t row : seeing_) {
-      const auto m = static_cast<std::size_t>(row);
-      const double residual = y_[m] - (*seen)[m];
-      misfit += residual * residual;
-      followed += sign_of(m) * ((*moved)[m] - (*seen)[m]);
+    Objective objective = objective_;
+    objective.lambda *= std::pow(step, k);
+    auto tried = trial(objective, k);
+    if (!tried) {
+      if (k != 0.0 && tried.error().code != ErrorCode::interrupted) return {};
+      return tl::unexpected(std::move(tried.error()));
     }
-    const double variance = sigma_ * sigma_;
-    const double freedom = followed / (probe_size * sigma_);
-    found.trials.push_back(
-        {objective.lambda, misfit + variance * (2.0 * freedom - static_cast<double>(seeing_.size()))});
+    tried_.push_back({k, *tried});
+    // The misfit grows with lambda, and the risk is at least that.
+    hopeless_ = hopeless_ || tried->misfit - noise_ > least_risk() + slack();
     return {};
   }
 
-  /// A factor may go with its lambda, and that of double precision is not kept.
+  Result<LambdaTrial> trial(const Objective& objective, double k) {
+    auto solver = TRY(Reconstructor::create(response_, objective, plan_, found_.factor, progress_));
+    if (!found_.factor && reusable_factor()) found_.factor = solver.factor();
+    const Explained seen = TRY(explained(solver, frame_.y));
+    const Explained moved = TRY(explained(solver, probed_));
+    double misfit = 0.0, followed = 0.0, left = 0.0, all = 0.0;
+    for (const auto& [m, weight] : channels_) {
+      const double residual = frame_.y[m] - seen.samples[m];
+      misfit += weight * residual * residual;
+      left += weight * seen.samples[m] * seen.samples[m];
+      all += weight * frame_.y[m] * frame_.y[m];
+      followed += std::sqrt(weight) * sign_of(m) * (moved.samples[m] - seen.samples[m]);
+    }
+    const double freedom =
+        std::clamp(followed / (probe_size * frame_.sigma), 0.0, static_cast<double>(channels_.size()));
+    const double variance = frame_.sigma * frame_.sigma;
+    hopeless_ = left <= nothing_left * all;
+    const double risk = misfit - noise_ + 2.0 * variance * freedom;
+    const double grown = 2.0 * coefficients_per_channel * noise_ * std::log(step) * k;
+    const double surprise = weighs_l1_ ? misfit + 2.0 * objective.lambda * seen.penalty - grown : risk;
+    return LambdaTrial{objective.lambda, risk, surprise, misfit};
+  }
+
   [[nodiscard]] bool reusable_factor() const noexcept {
     return uses_factor(plan_.solver) && plan_.solver->rho != RhoUse::lambda && plan_.precision == Precision::f32;
   }
 
-  /// A x of the picture that the samples give.
-  [[nodiscard]] Result<std::vector<double>> samples_of(const Reconstructor& solver, std::span<const float> y) const {
+  [[nodiscard]] Result<Explained> explained(const Reconstructor& solver, std::span<const float> y) const {
     const AlignedWorkspace memory(solver.required_bytes());
     std::vector<float> picture(static_cast<std::size_t>(response_.cols()));
-    if (solver.solve(y, {}, memory.span(), picture).health == Health::invalid) {
+    const FrameInfo info = solver.solve(y, frame_.weights, memory.span(), picture);
+    if (info.health == Health::invalid) {
       return fail(ErrorCode::out_of_range, "samples", "cannot be solved: one is not finite or far too large");
     }
-    const std::vector<double> x(picture.begin(), picture.end());
-    std::vector<double> samples(y.size());
-    response_.forward(x, samples);
-    return samples;
+    Explained result{std::vector<double>(y.size()), 0.0};
+    response_.forward(std::vector<double>(picture.begin(), picture.end()), result.samples);
+    const double lambda = solver.objective().lambda;
+    if (lambda > 0.0) result.penalty = std::max(0.0, info.objective - info.residual * info.residual / 2.0) / lambda;
+    return result;
   }
 
   const Response& response_;
-  const Plan& plan_;
-  std::span<const float> y_;
-  double sigma_;
-  std::vector<std::int32_t> seeing_;
-  std::optional<Factor> factor_;
-  const Progress& progress_;
+  const Objective& objective_;
+  Plan plan_;
+  const NoisyFrame& frame_;
+  bool weighs_l1_;
   std::vector<float> probed_;
+  const Progress& progress_;
+  std::vector<Channel> channels_;
+  double noise_ = 0.0;  ///< that the channels hold together
+  LambdaByRisk found_;
+  std::vector<Tried> tried_;
+  bool hopeless_ = false;  ///< no larger lambda can win
 };
 
 }  // namespace
 
 Result<LambdaByRisk> lambda_by_risk(const Response& response, const Objective& objective, const Plan& plan,
-                                    std::span<const float> y, double sigma, std::optional<Factor> factor,
-                                    const Progress& progress) {
-  if (!std::isfinite(sigma) || sigma < 0.0) {
+                                    const NoisyFrame& frame, std::optional<Factor> factor, const Progress& progress) {
+  if (!std::isfinite(frame.sigma) || frame.sigma < 0.0) {
     return fail(ErrorCode::out_of_range, "sigma",
-                "is " + std::to_string(sigma) + ", expected a finite number of 0 or more");
+                "is " + std::to_string(frame.sigma) + ", expected a finite number of 0 or more");
   }
-  if (y.size() != static_cast<std::size_t>(response.rows())) {
+  const auto rows = static_cast<std::size_t>(response.rows());
+  for (const std::size_t count : {frame.y.size(), frame.weights.empty() ? rows : frame.weights.size()}) {
+    if (count == rows) continue;
     return fail(ErrorCode::mismatch, "samples",
-                "are " + std::to_string(y.size()) + ", the response has " + std::to_string(response.rows()) + " rows");
+                "or weights are " + std::to_string(count) + ", the response has " + std::to_string(rows) + " rows");
   }
-  if (sigma == 0.0) return LambdaByRisk{objective.lambda, {}, std::move(factor)};
-  return RiskSearch(response, plan, y, sigma, std::move(factor), progress).run(objective);
+  return RiskSearch(response, objective, plan, frame, std::move(factor), progress).run();
 }
 
 }  // namespace compueye::recon

@@ -93,6 +93,36 @@ std::vector<Case> lambda_cases() {
   return cases;
 }
 
+std::vector<Case> family_cases() {
+  std::vector<Case> cases;
+  for (Case eye : eyes()) {
+    eye.tuning_sigmas = {55, 45, 35, 25, 15, 5, -5};
+    eye.evaluation_sigmas = {60, 50, 40, 30, 20, 10, 0, -10};
+    if (eye.large) eye.tuning_sigmas = {50, 30, 15, 5, -5}, eye.evaluation_sigmas = {60, 40, 20, 10, -10};
+    eye.seeds = eye.eye.rows == 8 ? 2 : 1;
+    eye.grid_step = eye.large ? 4.0 : 2.0;
+    for (const BasisKind basis :
+         {BasisKind::identity, BasisKind::dct, BasisKind::tv, BasisKind::haar, BasisKind::db4}) {
+      if (eye.large && basis != BasisKind::dct && basis != BasisKind::tv) continue;
+      for (const bool measured : {false, true}) {
+        for (const auto constraint : {recon::ConstraintKind::box, recon::ConstraintKind::none}) {
+          if (constraint == recon::ConstraintKind::none && eye.large) continue;
+          Case c = eye;
+          c.measured = measured;
+          c.constraint = constraint;
+          set_basis(c, basis);
+          if (constraint == recon::ConstraintKind::none) c.name += " free";
+          const int span = basis == BasisKind::identity ? 6 : 13;
+          c.grid_below = eye.large ? span / 2 : span;
+          c.grid_above = eye.large ? 4 : 9;
+          cases.push_back(std::move(c));
+        }
+      }
+    }
+  }
+  return cases;
+}
+
 std::vector<Case> paper_cases() {
   std::vector<Case> cases;
   for (Case& c : lambda_cases()) {

@@ -29,6 +29,9 @@ struct Case {
 /// Every eye with every basis, drawn and measured.
 [[nodiscard]] std::vector<Case> lambda_cases();
 
+/// Every eye with every basis, drawn and measured, in the box and free; sigmas are signal-to-noise ratios in dB there.
+[[nodiscard]] std::vector<Case> family_cases();
+
 /// The 80x80 eye as the paper's figures have it: y = A x exactly, sigma^2 = .1, seed 0.
 [[nodiscard]] std::vector<Case> paper_cases();
 

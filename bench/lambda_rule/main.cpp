@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/lambda_rule/cases.hpp"
+#include "bench/lambda_rule/family.hpp"
 #include "bench/lambda_rule/sweep.hpp"
 #include "bench/lambda_rule/tables.hpp"
 
@@ -24,6 +25,7 @@ struct Options {
   bool tuning = false;
   bool each = false;
   bool paper_noise = false;
+  bool family = false;
   std::vector<std::string> only;
 };
 
@@ -61,6 +63,19 @@ void print_paper_noise() {
   }
 }
 
+void print_family(const Options& options) {
+  if (!options.tuning) bench::print_family_head();
+  for (const bench::Case& c : bench::family_cases()) {
+    if (!wanted(c, options)) continue;
+    if (options.tuning) {
+      bench::print_family_points(c);
+    } else {
+      bench::print_family_scores(c, options.each);
+    }
+    static_cast<void>(std::fflush(stdout));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -70,11 +85,16 @@ int main(int argc, char** argv) {
   app.add_flag("--tuning", options.tuning, "the scenes and noise levels that the rule's factors were chosen on");
   app.add_flag("--each", options.each, "a line a scene");
   app.add_flag("--paper-noise", options.paper_noise, "only the 80x80 eye at the paper's noise, by rule");
+  app.add_flag("--family", options.family, "scenes of every kind from 60 to -10 dB");
   app.add_option("--only", options.only, "only cases whose name contains all of these");
   app.footer("Example: bench_lambda_rule --full --only 80x80 tv measured");
   CLI11_PARSE(app, argc, argv);
   if (options.paper_noise) {
     print_paper_noise();
+    return 0;
+  }
+  if (options.family) {
+    print_family(options);
     return 0;
   }
   if (!options.tuning) bench::print_evaluation_head();

@@ -60,7 +60,7 @@ Sweep SweptEye::sweep(const std::string& scene, std::uint64_t seed, double sigma
     result.debiased = nmse_of(debiased(case_, response_, y, first), truth);
     result.reweighted = nmse_of(reweighted(case_, response_, y, objective(rule), factor_), truth);
   }
-  const auto found = recon::lambda_by_risk(response_, objective(rule), plan(), y, sigma, factor_);
+  const auto found = recon::lambda_by_risk(response_, objective(rule), plan(), {y, {}, sigma}, factor_);
   result.risk_multiple = found.value().lambda / rule;
   result.by_risk = nmse_at(found.value().lambda, y, truth);
   return result;

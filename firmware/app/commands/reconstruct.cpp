@@ -80,17 +80,11 @@ Result<Inputs> read_inputs(const ReconstructOptions& o, const ProblemStatement& 
   return inputs;
 }
 
-/// The risk is known for samples that all carry the same noise.
 Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, const Board& board, const Inputs& inputs,
                                                 const recon::Progress& progress) {
-  const auto weights = inputs.frames.weights_of(0);
-  if (std::any_of(weights.begin(), weights.end(), [](float w) { return w != 1.0F; })) {
-    return fail(ErrorCode::unsupported, "--lambda-from-samples",
-                "needs a first frame whose weights are the largest of every channel, expected --weights of shape (M,) "
-                "or a complete first frame");
-  }
-  auto found = recon::lambda_by_risk(*inputs.response, board.objective, board.plan, inputs.frames.samples_of(0),
-                                     board.noise_sigma(), std::nullopt, progress);
+  auto found = recon::lambda_by_risk(
+      *inputs.response, board.objective, board.plan,
+      {inputs.frames.samples_of(0), inputs.frames.weights_of(0), board.noise_sigma()}, std::nullopt, progress);
   if (!found && found.error().code != ErrorCode::interrupted) found.error().place = o.samples;
   return found;
 }

@@ -41,8 +41,8 @@ void add_problem(OptionList& options, ReconstructOptions& o) {
   options.settings("reconstruct", o.settings);
   options
       .flag("--lambda-from-samples", o.lambda_from_samples,
-            "choose among six multiples of the rule's lambda by the risk that the first frame shows; costs twelve "
-            "frames")
+            "choose among multiples of the rule's lambda by the risk that the first frame shows: best where noise is "
+            "large; costs up to thirty frames")
       .needs("--sigma");
   options.flag("--as-published", o.as_published,
                "adm as YALL1 v1.4 does it, for comparison: it may stop where there is no solution");
