@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -82,9 +81,9 @@ Result<Inputs> read_inputs(const ReconstructOptions& o, const ProblemStatement& 
 
 Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, const Board& board, const Inputs& inputs,
                                                 const recon::Progress& progress) {
-  auto found = recon::lambda_by_risk(
-      *inputs.response, board.objective, board.plan,
-      {inputs.frames.samples_of(0), inputs.frames.weights_of(0), board.noise_sigma()}, std::nullopt, progress);
+  auto found = recon::lambda_by_risk(*inputs.response, board.objective, board.plan,
+                                     {inputs.frames.samples_of(0), inputs.frames.weights_of(0), board.noise_sigma()},
+                                     std::nullopt, progress);
   if (!found && found.error().code != ErrorCode::interrupted) found.error().place = o.samples;
   return found;
 }
