@@ -107,6 +107,10 @@ TEST_CASE("the extent of a stream: asked, forgotten, unreachable, never begun") 
   anew_before.now_ns = 300 * ms;
   CHECK(begun().close(anew_before, 1255 * ms).made == 25);
   CHECK_FALSE(begun().close(anew_before, 1255 * ms).estimated);
+  // As many frames as the stream before had, which it does not remember.
+  anew_before.frames = before.frames;
+  anew_before.last_t_ns = before.last_t_ns;
+  CHECK(begun().close(anew_before, 1405 * ms).made == 40);
   StreamExtent gone = begun();
   gone.saw_gone(1101 * ms);
   gone.saw_gone(1201 * ms);

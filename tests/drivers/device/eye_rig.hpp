@@ -108,6 +108,7 @@ class EyeRig {
     REQUIRE(clock.now_ns() <= deadline_ns);
     const hal::FrameAccount account = source().account();
     REQUIRE(account.balanced());
+    REQUIRE(source().faults() == source().failures().faults());
     if (!block) return block;
     ++delivered_;
     REQUIRE(account.delivered == delivered_);
