@@ -222,4 +222,15 @@ core::LeastResidual Reconstructor::least_residual(std::span<const float> y, std:
   });
 }
 
+void Reconstructor::channel_residuals(std::span<const float> y, std::span<const float> weights,
+                                      std::span<std::byte> workspace, std::span<const float> x,
+                                      std::span<float> residuals) const noexcept {
+  std::fill(residuals.begin(), residuals.end(), 0.0F);
+  if (!fits(y, weights, workspace, least_residual_bytes(), x) || residuals.size() != y.size()) return;
+  const float* w = weights.empty() ? nullptr : weights.data();
+  with_problem(*tables_, [&](const auto&, const auto& problem) {
+    core::channel_residuals(problem, y.data(), w, x.data(), workspace.data(), residuals.data());
+  });
+}
+
 }  // namespace compueye::recon

@@ -66,6 +66,10 @@ class Reconstructor {
                                                    std::span<std::byte> workspace,
                                                    std::span<const float> x) const noexcept;
   [[nodiscard]] std::size_t least_residual_bytes() const noexcept;
+  /// y - A x of every channel, 0 where it is blind or weighs nothing; all 0 where a sample in use is not finite or a
+  /// buffer has the wrong size. `residuals` has M entries, the rest as for least_residual().
+  void channel_residuals(std::span<const float> y, std::span<const float> weights, std::span<std::byte> workspace,
+                         std::span<const float> x, std::span<float> residuals) const noexcept;
 
   /// What the factor of such a plan is, without its values: what a stored one has to be to be used.
   [[nodiscard]] static Factor wanted_factor(const Response& response, const Objective& objective, const Plan& plan);

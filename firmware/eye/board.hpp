@@ -40,6 +40,7 @@ struct Board {
   recon::Plan plan;              ///< but for what depends on the response
   std::optional<double> lambda;  ///< by hand, >= 0; absent: by rule from the noise
   std::optional<double> sigma;   ///< noise of one sample in units of y, >= 0; absent: as the sensor's figures give
+  bool find_dead = true;         ///< run looks for channels that nobody has told to be dead
   SceneSettings scene;
 
   std::string folder;  ///< where board.toml lies; files belonging to the board go beside it

@@ -39,9 +39,10 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const LivingResponse& l
   ReadyEye eye;
   eye.sees_ = living.sees;
   recon::Plan plan = board.plan;
-  // As many as the correction lets pass, so that no usable frame is too much for the solver.
+  // As many as the correction lets pass, so that no usable frame is too much for the solver; and as many to be found.
   const auto seeing = static_cast<double>(std::count(eye.sees_.begin(), eye.sees_.end(), 1));
-  plan.max_reweighted = static_cast<int>(std::ceil(board.sensor.max_missing_share * seeing + 1e-9));
+  const int missing = static_cast<int>(std::ceil(board.sensor.max_missing_share * seeing + 1e-9));
+  plan.max_reweighted = board.find_dead ? 2 * missing : missing;
   recon::Objective objective = board.objective;
   eye.lambda_ = TRY(choose_lambda(maker.response(), plan.solver, objective.basis, board.lambda, board.noise_sigma()));
   objective.lambda = eye.lambda_.value;

@@ -44,6 +44,9 @@ class LadderSolver final : public FrameSolver {
   [[nodiscard]] hal::FrameFormat format() const noexcept override { return solvers_.front()->format(); }
   recon::FrameInfo solve(std::span<const float> y, std::span<const float> weights,
                          std::span<float> x) noexcept override;
+  void forget() noexcept override {
+    for (const auto& solver : solvers_) solver->forget();
+  }
 
   /// From any thread; holds from the next frame on.
   void use(std::size_t rung) noexcept { wanted_.store(rung, std::memory_order_relaxed); }

@@ -19,6 +19,11 @@ class FrameSolver {
   [[nodiscard]] virtual int channels() const noexcept = 0;  ///< M, blind rows included
   [[nodiscard]] virtual hal::FrameFormat format() const noexcept = 0;
 
+  /// Before solve(): sets to 0 the weights of channels that this solver leaves out by itself.
+  virtual void mask(std::span<float> /*weights*/) noexcept {}
+  /// The next frame goes on from nothing.
+  virtual void forget() noexcept {}
+
   /// y and weights have M entries (weights 0 or 1; y is 0 where the weight is), x has rows * cols. No allocation, no
   /// lock, no exception. A frame whose health is `invalid` is not published.
   virtual recon::FrameInfo solve(std::span<const float> y, std::span<const float> weights,

@@ -24,6 +24,7 @@ void ReconstructStage::take(CorrectedSlot& corrected, PictureSlot& picture) noex
   picture.weights.swap(corrected.weights);
 
   const std::int64_t begin_ns = clock_.now_ns();
+  solver_.mask(picture.weights);
   picture.info = solver_.solve(picture.y, picture.weights, picture.pixels);
   picture.solve_ns = clock_.now_ns() - begin_ns;
   times_.add(picture.solve_ns);

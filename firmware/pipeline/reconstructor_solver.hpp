@@ -20,6 +20,7 @@ class ReconstructorSolver final : public FrameSolver {
   }
   recon::FrameInfo solve(std::span<const float> y, std::span<const float> weights,
                          std::span<float> x) noexcept override;
+  void forget() noexcept override { reconstructor_.forget_last_frame(workspace_.span()); }
 
  private:
   const recon::Reconstructor& reconstructor_;

@@ -54,14 +54,18 @@ std::string_view StatusLine::print(std::int64_t now_ns, std::span<char> room) no
     if (rate_hz_ >= 0.0) std::snprintf(rate, sizeof rate, "%.1f", rate_hz_);
     std::snprintf(now, sizeof now, "%s/s, age %.0f ms", rate, static_cast<double>(status_->age_ns()) * 1e-6);
   }
-  char fit[48] = "";
+  char fit[48] = "", dead[48] = "";
+  if (const std::uint64_t out = status_->left_out(); out > 0) {
+    std::snprintf(dead, sizeof dead, ", %" PRIu64 " channel%s left out", out, out == 1 ? "" : "s");
+  }
   if (const double misfit = status_->misfit(); misfit > 0.0) {
     std::snprintf(fit, sizeof fit, ", residual %.0f x noise", misfit);
   }
   const std::uint64_t gaps = status_->gaps(), faults = status_->faults();
   const int wanted = std::snprintf(
-      room.data(), room.size(), "%s, %" PRIu64 " dropped in %" PRIu64 " gap%s, %" PRIu64 " late, %" PRIu64 " fault%s%s",
-      now, status_->dropped(), gaps, gaps == 1 ? "" : "s", status_->late(), faults, faults == 1 ? "" : "s", fit);
+      room.data(), room.size(),
+      "%s, %" PRIu64 " dropped in %" PRIu64 " gap%s, %" PRIu64 " late, %" PRIu64 " fault%s%s%s", now,
+      status_->dropped(), gaps, gaps == 1 ? "" : "s", status_->late(), faults, faults == 1 ? "" : "s", dead, fit);
   if (wanted < 0) return {};
   return {room.data(), std::min(static_cast<std::size_t>(wanted), room.size() - 1)};
 }

@@ -20,6 +20,10 @@ class LiveStatus {
   /// The response does not fit: how many times what noise explains the residual is; 0: it does.
   void misfit_is(double times) noexcept { misfit_.store(times, std::memory_order_relaxed); }
 
+  /// So many channels are left out because they do not follow the others.
+  void left_out_are(std::uint64_t channels) noexcept { left_out_.store(channels, std::memory_order_relaxed); }
+
+  [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_.load(std::memory_order_relaxed); }
   [[nodiscard]] double misfit() const noexcept { return misfit_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t faults() const noexcept { return faults_.load(std::memory_order_relaxed); }
   [[nodiscard]] bool recovering() const noexcept { return recovering_.load(std::memory_order_relaxed); }
@@ -40,6 +44,7 @@ class LiveStatus {
   std::atomic<std::uint64_t> faults_{0};
   std::atomic<bool> recovering_{false};
   std::atomic<double> misfit_{0.0};
+  std::atomic<std::uint64_t> left_out_{0};
 };
 
 /// A LiveStatus as a line of text, with the rate since about a second ago. One a reader.

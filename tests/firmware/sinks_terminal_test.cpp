@@ -268,6 +268,9 @@ TEST_CASE("the line says that the response does not fit as long as it does not")
   std::array<char, 160> room{};
   CHECK(line.print(0, room) == "-/s, age 1 ms, 0 dropped in 0 gaps, 0 late, 0 faults, residual 94 x noise");
   status.misfit_is(0.0);
+  status.left_out_are(3);
+  CHECK(line.print(0, room).ends_with("0 faults, 3 channels left out"));
+  status.left_out_are(0);
   CHECK(line.print(0, room).ends_with("0 faults"));
 }
 

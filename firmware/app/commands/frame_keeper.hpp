@@ -38,8 +38,11 @@ class FrameKeeper final : public FrameObserver {
   [[nodiscard]] const LiveStatus& status() const noexcept { return status_; }
   /// LiveStatus::source_is().
   void source_is(std::uint64_t faults, bool recovering) noexcept { status_.source_is(faults, recovering); }
-  /// LiveStatus::misfit_is().
-  void misfit_is(double times) noexcept { status_.misfit_is(times); }
+  /// LiveStatus::misfit_is() and left_out_are().
+  void response_is(double misfit, std::uint64_t left_out) noexcept {
+    status_.misfit_is(misfit);
+    status_.left_out_are(left_out);
+  }
 
  private:
   [[nodiscard]] std::span<float> slot(std::size_t index) noexcept;

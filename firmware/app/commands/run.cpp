@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,6 +26,7 @@
 #include "firmware/operating_points/point_choice.hpp"
 #include "firmware/operating_points/point_ladder.hpp"
 #include "firmware/operating_points/stored_points.hpp"
+#include "firmware/pipeline/channel_watch.hpp"
 #include "firmware/pipeline/fit_watch.hpp"
 #include "firmware/pipeline/pipeline.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
@@ -49,6 +51,16 @@ class ScreenLease {
  private:
   Session& session_;
 };
+
+/// As many may be found as a frame may lack besides.
+recon::ChannelDetector channel_detector(const Board& board, std::vector<std::uint8_t> sees) {
+  const auto seeing = static_cast<double>(std::count(sees.begin(), sees.end(), 1));
+  for (const int dead : board.sensor.dead) sees[static_cast<std::size_t>(dead)] = 0;
+  recon::ChannelDetectorSettings settings;
+  settings.sigma = board.noise_sigma();
+  settings.most = static_cast<std::size_t>(std::ceil(board.sensor.max_missing_share * seeing + 1e-9));
+  return {board.eye.rows, board.eye.columns, sees, settings};
+}
 
 /// From the board to the report, step by step; each step is a member, and what the next ones need stays here.
 class BoardRun {
@@ -221,12 +233,15 @@ Result<void> BoardRun::run_pipeline() {
 
 Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, FrameObserver& observer) {
   FitWatch fit(eye().reconstructor(), board_.noise_sigma(), observer);
+  std::optional<ChannelWatch> channels;
+  if (board_.find_dead) channels.emplace(solver, eye().reconstructor(), channel_detector(board_, eye().sees()));
+  FrameSolver& watched = channels ? static_cast<FrameSolver&>(*channels) : solver;
   auto pipeline =
-      TRY(Pipeline::create(pipeline_settings(), source_->source(), solver, *sinks.all, session_.clock(), &fit));
+      TRY(Pipeline::create(pipeline_settings(), source_->source(), watched, *sinks.all, session_.clock(), &fit));
   std::optional<RunWatch> watch;
-  watch.emplace([this, &fit, tell = how_far(sinks.screen), told = false]() mutable {
+  watch.emplace([this, &fit, &channels, tell = how_far(sinks.screen), told = false]() mutable {
     keeper_->source_is(source_->source().faults(), source_->source().recovering());
-    keeper_->misfit_is(fit.misfit());
+    keeper_->response_is(fit.misfit(), channels ? channels->count() : 0);
     tell();
     const std::string failure = told ? std::string() : source_->failure();
     if (failure.empty()) return;
@@ -236,6 +251,7 @@ Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, Fram
   report_.summary = pipeline.run(session_.stop_requested());
   watch.reset();
   report_.fit = fit.summary();
+  if (channels) report_.channels = channels->detector();
   for (const std::string& sentence : source_->notes()) note(sentence);
   if (auto recorded = source_->recorded(); !recorded && !report_.summary.error) {
     report_.summary.error = std::move(recorded.error());

@@ -128,6 +128,19 @@ Figures fit_figures(const FitSummary& fit) {
           {"least_over_noise", shown.least}};
 }
 
+Value left_out_figures(const std::optional<recon::ChannelDetector>& channels) {
+  if (!channels) return {};
+  Value::List ommatidia;
+  const auto masked = channels->masked();
+  for (std::size_t m = 0; m < masked.size(); ++m) {
+    if (masked[m] != 0) ommatidia.emplace_back(m);
+  }
+  return Figures{{"ommatidia", std::move(ommatidia)},
+                 {"found", channels->found()},
+                 {"recovered", channels->recovered()},
+                 {"crowded_frames", channels->crowded()}};
+}
+
 Figures stage_figures(const StageAccounts& accounts) {
   return {{"source", figures_of(accounts.source)},
           {"acquire", figures_of(accounts.acquire)},
@@ -175,6 +188,11 @@ void tell_frames(Figures& f, const RunReport& report) {
       "[, {health.dark_frames} dark][, {health.untrusted_times} with an untrusted time]"
       "[, {health.config_mismatches} with another configuration][, {health.read_timeouts} reads timed out]"
       "[; {health.masked_channels_min} to {health.masked_channels_max} channels masked]\n");
+  if (report.channels && report.channels->found() > 0) {
+    f.tell(
+        "left out as dead, stuck or hot: {left_out.ommatidia:count} ommatidia[ ({left_out.ommatidia})]"
+        "[, {left_out.recovered} times one recovered]\n");
+  }
   if (report.fit.misfits > 0) {
     f.tell(
         "misfit: residual {fit.residual_over_noise:3} times what noise explains, and no picture's is below "
@@ -281,6 +299,7 @@ Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& 
             {"conventional", value_of(report.conventional)},
             {"last", last_figures(report)},
             {"fit", fit_figures(report.fit)},
+            {"left_out", left_out_figures(report.channels)},
             {"files", report.files},
             {"notes", report.notes}};
   if (s.error) f.add("error", figures_of(*s.error));

@@ -13,6 +13,7 @@
 #include "firmware/pipeline/fit_watch.hpp"
 #include "firmware/pipeline/run_summary.hpp"
 #include "firmware/text/figures.hpp"
+#include "recon/channel_detector.hpp"
 
 namespace compueye::firmware {
 
@@ -40,7 +41,8 @@ struct RunReport {
   std::optional<LadderRun> ladder;         ///< by stored points
   RunSummary summary;
   FitSummary fit;
-  std::optional<PictureQuality> quality;  ///< mean over `measured` delivered frames
+  std::optional<recon::ChannelDetector> channels;  ///< where dead ones were looked for
+  std::optional<PictureQuality> quality;           ///< mean over `measured` delivered frames
   std::size_t measured = 0;
   std::optional<PictureQuality> last_quality;  ///< of the last delivered frame
   std::optional<PictureQuality> conventional;  ///< of one frame

@@ -18,6 +18,12 @@ constexpr std::string_view section = "reconstruction";
 constexpr std::string_view all_that_solve = "run compare reconstruct";
 constexpr std::array<recon::Named<bool>, 2> starts{{{"cold", false}, {"warm", true}}};
 
+constexpr std::array<recon::Named<bool>, 2> switches{{{"on", true}, {"off", false}}};
+
+std::span<const recon::Named<bool>> switch_names() {
+  return switches;
+}
+
 std::span<const recon::Named<bool>> start_names() {
   return starts;
 }
@@ -124,7 +130,11 @@ void add_way(std::vector<Setting>& all) {
        field<&Board::plan, &Plan::threads>("threads", "that share a frame's work; pictures are the same bit for bit")
            .within({1, recon::WorkerThreads::most})
            .otherwise(1)
-           .option_of(all_that_solve, "--threads", "T")});
+           .option_of(all_that_solve, "--threads", "T"),
+       choice_field<switch_names, &Board::find_dead>(
+           "find_dead", "run finds dead, stuck and hot channels by what the others predict, and leaves them out")
+           .otherwise("on")
+           .option_of("run", "--find-dead", "SWITCH")});
 }
 
 void add_what_no_board_says(std::vector<Setting>& all) {

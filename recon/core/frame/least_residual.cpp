@@ -72,6 +72,20 @@ LeastResidual least_residual(const FrameProblem<T>& problem, const float* y, con
 }
 
 template <class T>
+void channel_residuals(const FrameProblem<T>& problem, const float* y, const float* weights, const float* x,
+                       std::byte* workspace, float* residuals) noexcept {
+  Workspace room(workspace);
+  Memory<T> memory(problem, room);
+  for (std::size_t c = 0; c < problem.channels; ++c) residuals[c] = 0.0F;
+  if (!memory.samples.gather(y, weights)) return;
+  static_cast<void>(take_picture(x, problem.pixels(), memory.picture));
+  memory.samples.residual(memory.picture, memory.residual);
+  for (std::size_t i = 0; i < problem.a.rows; ++i) {
+    residuals[static_cast<std::size_t>(problem.seeing[i])] = static_cast<float>(memory.residual[i]);
+  }
+}
+
+template <class T>
 std::size_t least_residual_bytes(const FrameProblem<T>& problem) noexcept {
   Workspace counter;
   static_cast<void>(Memory<T>(problem, counter));
@@ -82,6 +96,10 @@ template LeastResidual least_residual(const FrameProblem<float>&, const float*, 
                                       std::byte*) noexcept;
 template LeastResidual least_residual(const FrameProblem<double>&, const float*, const float*, const float*,
                                       std::byte*) noexcept;
+template void channel_residuals(const FrameProblem<float>&, const float*, const float*, const float*, std::byte*,
+                                float*) noexcept;
+template void channel_residuals(const FrameProblem<double>&, const float*, const float*, const float*, std::byte*,
+                                float*) noexcept;
 template std::size_t least_residual_bytes(const FrameProblem<float>&) noexcept;
 template std::size_t least_residual_bytes(const FrameProblem<double>&) noexcept;
 

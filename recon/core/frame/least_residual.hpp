@@ -23,6 +23,10 @@ struct LeastResidual {
 template <class T>
 [[nodiscard]] LeastResidual least_residual(const FrameProblem<T>& problem, const float* y, const float* weights,
                                            const float* x, std::byte* workspace) noexcept;
+/// y - A x of every channel, of problem.channels: 0 where it is blind or weighs nothing. One A, in the same workspace.
+template <class T>
+void channel_residuals(const FrameProblem<T>& problem, const float* y, const float* weights, const float* x,
+                       std::byte* workspace, float* residuals) noexcept;
 /// Bytes of that workspace, exactly.
 template <class T>
 [[nodiscard]] std::size_t least_residual_bytes(const FrameProblem<T>& problem) noexcept;
