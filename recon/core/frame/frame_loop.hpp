@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include "recon/core/frame/black_picture.hpp"
 #include "recon/core/frame/frame_outcome.hpp"
 #include "recon/core/frame/frame_problem.hpp"
 #include "recon/core/parts/workspace.hpp"
@@ -16,6 +17,7 @@ namespace compueye::recon::core {
 //                             come to an end by itself
 //   bool finish(info)         leaves the answer in picture() and fills in what is known of it; false: it is not finite
 //   const T* picture()        problem.pixels() values
+//   SpareVectors<T> spare()   of a method that minimises the objective: what it works in, free once x is handed out
 //   void delivered(info)      if there is one: comes last, when info is complete; not after a begin() that was false
 
 /// What goes on after begin().
@@ -42,6 +44,7 @@ FrameInfo run_frame(Method& method, const FrameProblem<T>& problem, const float*
   iterate_all(method, problem.point.iterations);
   const bool finite = method.finish(info);
   deliver(method.picture(), finite, problem.pixels(), info, x);
+  if constexpr (requires { method.spare(); }) prefer_black(problem, method.spare(), info, x);
   if constexpr (requires { method.delivered(info); }) method.delivered(info);
   return info;
 }

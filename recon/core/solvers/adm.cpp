@@ -77,6 +77,9 @@ class Adm {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return sparse_; }
+  [[nodiscard]] SpareVectors<T> spare() noexcept {
+    return {step_.samples(), step_.row_scratch(), point_, coefficients_, scratch_};
+  }
 
  private:
   /// Mean brightness of the picture, by what the channels read and what they would read from white.

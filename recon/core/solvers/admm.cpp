@@ -126,6 +126,9 @@ class Admm : public MadeInWorkspace {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return x_; }
+  [[nodiscard]] SpareVectors<T> spare() noexcept {
+    return {step_.samples(), step_.row_scratch(), x_, coefficients_, scratch_};
+  }
 
  private:
   /// A dual of lambda / rho leaves its rounding in every pixel, and so in every coefficient that should be zero.

@@ -51,6 +51,7 @@ class ChambollePock {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return projected_; }
+  [[nodiscard]] SpareVectors<T> spare() noexcept { return {samples_, residual_, projected_, coefficients_, scratch_}; }
 
  private:
   /// Duals: u = w (u + s (A x - y)) / (w + s), which is 0 for a missing channel; q = clip(q + s Psi x, +-lambda).

@@ -60,6 +60,9 @@ class Pdhg {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return gradient_; }
+  [[nodiscard]] SpareVectors<T> spare() noexcept {
+    return {dual_step_.samples(), dual_step_.row_scratch(), gradient_, coefficients_, scratch_};
+  }
 
   void delivered(const FrameInfo& info) noexcept {
     warm_start_.keep(dual_step_.samples(), info.health != Health::invalid);
