@@ -23,7 +23,9 @@ namespace compueye::recon {
 /// rule gives 20: after 60 iterations at sigma .1 the phantom has half the NMSE of rho 20, at sigma .3 three quarters.
 /// The objective alone would rather have 20 at sigma .3 and 4 at sigma .05. On the 8x8 eyes both rules agree.
 ///
-/// All scale as A^2 does, and not with the unit of x. ||A||_F^2 is that of the bulk of the rows (row_norms.hpp).
+/// All scale as A^2 does, and not with the unit of x. Where single rows are far louder than the others (row_norms.hpp)
+/// rho is 4 lambda over white, but within what the rule says of the bulk of the rows and of all: with a lambda of the
+/// loud row's size only the latter converges, with one of the others' only the former.
 [[nodiscard]] double resolve_rho(const Response& response, const Objective& objective, const Plan& plan);
 
 /// The first of the rules.

@@ -1,14 +1,12 @@
 #include "recon/core/solvers/pdhg.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "recon/setup/dual_step_tables.hpp"
 #include "recon/setup/factor_check.hpp"
 #include "recon/setup/inverse_tables.hpp"
 #include "recon/setup/leading_modes.hpp"
 #include "recon/setup/penalty_rule.hpp"
-#include "recon/setup/row_norms.hpp"
 #include "recon/setup/solver_row_of.hpp"
 
 namespace compueye::recon {
@@ -35,22 +33,17 @@ double basis_share(BasisKind basis, bool every_mode) noexcept {
   return every_mode ? 0.25 : 0.18;
 }
 
-constexpr double share_with_few_modes = 0.021;
-
-/// rho over ||A||^2 below which the rounding of a step, or of modes kept in float32, would undo it in the strongest
-/// mode (dual_step_tables.cpp).
-constexpr double most_stretch = 8.0 * double{std::numeric_limits<float>::epsilon()};
+constexpr double share_with_every_mode = 0.06, share_with_few_modes = 0.021;
 
 /// The inverse of the primal step: .06 ||A||_F^2 / N in every basis where all modes are known, else .021, whose longer
 /// steps do more for the modes that are not. On the 80x80 eye that is 7 (x >= 0, eight scenes): at sigma^2 = .1, 5, 7
 /// and 10 take 42, 30 and 27 iterations to 5 % of the converged NMSE in the DCT, 50, 40 and 36 in total variation; at
-/// 30 dB, 2, 2 and more than 60. Where single rows are far stronger than the others, no less than their step can bear.
+/// 30 dB, 2, 2 and more than 60. The whole norm even where single rows
+/// are far louder than the others, because the strongest mode bounds the steps.
 double rho_by_rule(const Response& response, const Objective&, const Plan& plan) {
   const auto order = static_cast<int>(response.seeing_rows().size());
-  const double bulk = bulk_squared_norm(response), whole = response.squared_norm();
-  const double least = bulk < whole ? whole * most_stretch : 0.0;
-  if (rank_by_rule(plan, order) == order) return std::max(least, rho_by_columns(response));
-  return std::max(least, share_with_few_modes * bulk / response.cols());
+  const double by_rows = response.squared_norm() / response.cols();
+  return (rank_by_rule(plan, order) == order ? share_with_every_mode : share_with_few_modes) * by_rows;
 }
 
 // Fitted on line art seen by the 80x80 and the 120x120 eye at sigma .1 to 10.
