@@ -109,7 +109,7 @@ hal::Result<std::vector<T>> packed_inverse(const Response& seeing, MetricKind me
   ParityGram gram(seeing, metric);
   constexpr double rounding = 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon());
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
-  if (auto done = invert_blocks(gram, rho, loud_row_scale(seeing), rounding, progress); !done)
+  if (auto done = invert_blocks(gram, rho, loud_row_scale(seeing, rho), rounding, progress); !done)
     return tl::unexpected(done.error());
   std::vector<T> packed;
   packed.reserve(factor_size(gram.classes()));

@@ -55,7 +55,7 @@ hal::Result<void> fill_inverse(SetUp<T>& from, const ParityClasses& classes, cor
   } else {
     values = from.kept.keep(TRY(packed_inverse<T>(from.seeing, from.factor.metric, from.plan.rho, from.progress)));
   }
-  problem.inverse = make_inverse(classes, loud_row_scale(from.seeing), values, from.kept);
+  problem.inverse = make_inverse(classes, loud_row_scale(from.seeing, from.plan.rho), values, from.kept);
   if constexpr (std::is_same_v<T, float>) {
     if (tried && !inverts(problem.inverse, from.seeing, problem.metric, from.plan.rho)) return not_a_factor();
   }

@@ -8,7 +8,7 @@
 namespace compueye::recon {
 
 /// The ADMM penalty rho of a plan: plan.rho when given; lambda for tikhonov; pdhg has a rule of its own; otherwise by
-/// rule, from A alone.
+/// rule, from A alone (but for loud rows, see below).
 ///
 ///   orthonormal bases:  rho = .06 ||A||_F^2 / N,           a share of the mean squared norm of A's columns
 ///   total variation:    rho = .1 ||A||_F ||A D'||_F / N,   D the forward differences of a picture's pixels

@@ -39,13 +39,14 @@ double bulk_squared_norm(const Response& response) {
   return sum;
 }
 
-std::vector<double> loud_row_scale(const Response& seeing) {
+std::vector<double> loud_row_scale(const Response& seeing, double rho) {
   const std::vector<double> squares = squared_row_norms(seeing);
-  const double middle = median(squares), most = loud * middle;
-  if (std::none_of(squares.begin(), squares.end(), [=](double square) { return square > most; })) return {};
+  const double middle = median(squares) + rho, most = loud * middle;
+  if (std::none_of(squares.begin(), squares.end(), [=](double square) { return square + rho > most; })) return {};
   std::vector<double> scale;
   for (const double square : squares) {
-    scale.push_back(square > most ? std::exp2(-std::round(0.5 * std::log2(square / middle))) : 1.0);
+    const double size = square + rho;
+    scale.push_back(size > most ? std::exp2(-std::round(0.5 * std::log2(size / middle))) : 1.0);
   }
   return scale;
 }

@@ -14,8 +14,9 @@ namespace compueye::recon {
 /// eye without such rows is its ||A||_F^2.
 [[nodiscard]] double bulk_squared_norm(const Response& response);
 
-/// Powers of two that bring the rows beyond that near the median, so that (S A A' S + rho S^2)^-1 is as easy to keep as
-/// the inverse of the other rows alone; empty where there is no such row. `seeing` has no blind rows.
-[[nodiscard]] std::vector<double> loud_row_scale(const Response& seeing);
+/// Powers of two that bring ||a_m||^2 + rho of such rows near that of the median, so that (S (A A' + rho I) S)^-1 is as
+/// easy to keep as the inverse of the other rows alone; empty where rho is beyond them, or there is none. `seeing` has
+/// no blind rows.
+[[nodiscard]] std::vector<double> loud_row_scale(const Response& seeing, double rho);
 
 }  // namespace compueye::recon

@@ -89,6 +89,20 @@ TEST_CASE("a row 1e5 times as loud as the others does not decide how fast they a
   CHECK(pdhg.info.duality_gap >= pdhg.info.objective * pdhg.above / (1.0 + pdhg.above) * 0.99);
 }
 
+TEST_CASE("a rho beyond a loud row needs no scaling, and its inverse is kept in float32") {
+  const Eye eye = dense_eye(24, 1e5);
+  recon::Plan plan;
+  plan.solver = recon::solver_named("tikhonov");
+  for (const double share : {1e-6, 1e-3, 1.0, 1e3}) {
+    CAPTURE(share);
+    const auto objective =
+        objective_of(recon::BasisKind::identity, recon::ConstraintKind::none, share * eye.a.squared_norm());
+    const auto made = recon::Reconstructor::create(eye.a, objective, plan);
+    REQUIRE(made);
+    CHECK(solve_frame(*made, to_float(eye.y)).info.health == recon::Health::converged);
+  }
+}
+
 TEST_CASE("weights across nine decades are solved in float32") {
   const Eye eye = dense_eye(24, 1.0);
   std::vector<double> weights;
