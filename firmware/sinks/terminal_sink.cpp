@@ -8,7 +8,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 
 #include "firmware/files/file_descriptor.hpp"
 #include "hal/try.hpp"
@@ -144,9 +143,9 @@ float TerminalSink::brightness_at(const hal::Frame& frame, int row, int col) con
 }
 
 void TerminalSink::put(std::string_view text) noexcept {
-  const std::size_t n = std::min(text.size(), buffer_.size() - used_);
-  std::memcpy(buffer_.data() + used_, text.data(), n);
-  used_ += n;
+  const std::string_view taken = text.substr(0, buffer_.size() - used_);
+  std::copy(taken.begin(), taken.end(), buffer_.begin() + static_cast<std::ptrdiff_t>(used_));
+  used_ += taken.size();
 }
 
 void TerminalSink::put_number(std::uint64_t value) noexcept {

@@ -175,7 +175,7 @@ std::string stability_plot(const Stability& s, const std::string& stem) {
                                                   recon::name(s.options.objective.basis), s.options.iterations)));
   text += log_axis('x', 1.0, most) + log_axis('y', best, safe) +
           "set xlabel 'condition of the response'\n"
-          "set ylabel 'objective above its least, as a share of itself'\n"
+          "set ylabel 'how far the objective is above its least, as a share'\n"
           "set grid xtics ytics lc rgb '#d8d8d8' lw 0.8\n"
           "set key outside right top vertical Left reverse noenhanced\n"
           "set border lc rgb '#606060'\nset tics nomirror\n";

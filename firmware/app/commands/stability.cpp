@@ -83,17 +83,17 @@ Result<void> run_stability(const StabilityRequest& asked, Session& session) {
 }
 
 std::string footer() {
-  return "Makes hard cases of an eye (near-duplicate rows, rows of very different size, other units, channels that "
-         "lie, "
-         "lambda far\noff) and solves each with every solver in float32 and in double. A line a case: how far each "
-         "came "
-         "from the optimum, and\nwhat failed safe. docs/stability.md has every case with the reason it is hard.\n\n"
-         "--out gets stability.csv, and stability.svg and .png where gnuplot is installed.\n"
-         "Ctrl-C keeps the cases that are done. Exit codes: 0 done, 1 failed, 2 wrong usage.\n\n"
-         "Examples:\n"
-         "  compueye stability --board boards/sim-8x8\n"
-         "  compueye stability --board boards/sim-8x8 --solvers admm,pdhg --basis dct --out stability\n"
-         "  compueye stability --response A.mtx --size 16x16 --constraint nonnegative";
+  return R"(Makes hard cases of an eye (near-duplicate rows, rows of very different size, other units, channels that lie, lambda
+far off) and solves each with every solver in float32 and in double. A line a case: how far each came from the optimum,
+and what failed safe. docs/stability.md has every case with the reason it is hard.
+
+--out gets stability.csv, and stability.svg and .png where gnuplot is installed.
+Ctrl-C keeps the cases that are done. Exit codes: 0 done, 1 failed, 2 wrong usage.
+
+Examples:
+  compueye stability --board boards/sim-8x8
+  compueye stability --board boards/sim-8x8 --solvers admm,pdhg --basis dct --out stability
+  compueye stability --response A.mtx --size 16x16 --constraint nonnegative)";
 }
 
 Action declare(OptionList& options) {
