@@ -39,7 +39,7 @@ NotRun marked(std::string_view line) {
 }
 
 /// Every command of the page's fenced blocks that name no language, in their order.
-std::vector<Command> commands_of(const std::string& page) {
+[[maybe_unused]] std::vector<Command> commands_of(const std::string& page) {
   std::ifstream file(source_path(page));
   REQUIRE(file);
   std::vector<Command> commands;
