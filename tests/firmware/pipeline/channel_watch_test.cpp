@@ -70,3 +70,49 @@ TEST_CASE("the picture beside unknown dead and hot channels becomes that of know
   CHECK(x == wanted);
   CHECK(watch.count() == 3);
 }
+
+namespace {
+
+/// A solver that counts how often it is told to begin anew.
+class ForgetfulSolver final : public firmware::FrameSolver {
+ public:
+  explicit ForgetfulSolver(firmware::FrameSolver& inner) : inner_(inner) {}
+  [[nodiscard]] int channels() const noexcept override { return inner_.channels(); }
+  [[nodiscard]] hal::FrameFormat format() const noexcept override { return inner_.format(); }
+  void forget() noexcept override { ++forgotten; }
+  recon::FrameInfo solve(std::span<const float> y, std::span<const float> weights,
+                         std::span<float> x) noexcept override {
+    return inner_.solve(y, weights, x);
+  }
+  int forgotten = 0;
+
+ private:
+  firmware::FrameSolver& inner_;
+};
+
+}  // namespace
+
+TEST_CASE("a solver that goes on from its last frame begins anew when a channel was found, and only then") {
+  const recon::Response response = broad_fields();
+  const recon::Reconstructor reconstructor = reconstructor_of(response);
+  std::vector<double> light(channels);
+  response.forward(std::vector<double>(channels, 0.5), light);
+  std::vector<float> y(light.begin(), light.end()), weights(channels), x(channels);
+  firmware::ReconstructorSolver inner(reconstructor);
+  ForgetfulSolver solver(inner);
+  const std::vector<std::uint8_t> sees(channels, 1);
+  firmware::ChannelWatch watch(solver, reconstructor, {side, side, sees, {.sigma = 0.01, .most = 6}});
+  const auto frames = [&](int count) {
+    for (int frame = 0; frame < count; ++frame) {
+      weights.assign(channels, 1.0F);
+      watch.mask(weights);
+      static_cast<void>(watch.solve(y, weights, x));
+    }
+  };
+  frames(4);
+  CHECK(solver.forgotten == 0);
+  y[77] = 0.0F;
+  frames(4);
+  CHECK(watch.count() == 1);
+  CHECK(solver.forgotten == 1);
+}
