@@ -147,11 +147,14 @@ class Admm : public MadeInWorkspace {
     synthesise(problem_.psi, in_basis_.z, before_, scratch_);
     for (std::size_t k = 0; k < n_; ++k) before_[k] = prox_l1_box(before_[k], T(0), problem_.lo, problem_.hi);
     analyse(problem_.psi, before_, coefficients_, scratch_);
-    FrameInfo other = info;
-    evaluate(step_.samples(), before_, l1_penalty(problem_, coefficients_), step_.row_scratch(), other);
-    if (!(other.objective < info.objective)) return;
-    info = other;
-    for (std::size_t k = 0; k < n_; ++k) x_[k] = before_[k];
+    const double objective = info.objective, residual = info.residual;
+    evaluate(step_.samples(), before_, l1_penalty(problem_, coefficients_), step_.row_scratch(), info);
+    if (info.objective < objective) {
+      for (std::size_t k = 0; k < n_; ++k) x_[k] = before_[k];
+    } else {
+      info.objective = objective;
+      info.residual = residual;
+    }
   }
 
   [[nodiscard]] bool reweights() const noexcept { return problem_.l1_reweighting > T(0); }
