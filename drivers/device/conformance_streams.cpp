@@ -19,6 +19,8 @@ constexpr std::uint64_t enough_frames = 30;
 
 hal::Result<void> ConformanceWalk::begin(const Configuration& wanted) {
   TRY(requests_.order(Request::reset_pipes, soon()));
+  // What the stream before has left in the buffers of host and bus would be judged as this one's.
+  TRY(silent_for(20 * ms));
   TRY(requests_.set_configuration(wanted, soon()));
   return requests_.order(Request::start, soon());
 }
