@@ -127,7 +127,7 @@ CommandLine read_command_line(int argc, const char* const* argv, std::span<const
   app.set_version_flag("--version", COMPUEYE_VERSION);
   app.require_subcommand(1);
   app.footer("Example: compueye run --board boards/sim-8x8 --frames 20\nEvery subcommand has its own --help.");
-  CommandLine line{Action{}, {}, false};
+  CommandLine line{Action{}, {}, false, {}};
   std::deque<OptionList> options;
   for (const Command* command : commands) {
     CLI::App* sub = app.add_subcommand(std::string(command->name), std::string(command->summary));
@@ -136,15 +136,17 @@ CommandLine read_command_line(int argc, const char* const* argv, std::span<const
     add(*sub, list);
     sub->footer(command->footer());
     sub->callback([&line, &list, command, action = std::move(action)] {
-      line = {action, command->on_signal, list.wants_json()};
+      const auto owner = list.stdout_owner();
+      line = {action, command->on_signal, list.wants_json(), owner.value_or("")};
+      if (!owner) line.action = tl::unexpected(owner.error());
     });
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return {print_instead(app, error), OnSignal::gives_up, false};
+    if (error.get_exit_code() == 0) return {print_instead(app, error), OnSignal::gives_up, false, {}};
     const bool json = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
-    return {tl::unexpected(usage_error(app, error, commands)), OnSignal::gives_up, json};
+    return {tl::unexpected(usage_error(app, error, commands)), OnSignal::gives_up, json, {}};
   }
   return line;
 }

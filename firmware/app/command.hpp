@@ -44,7 +44,8 @@ struct CommandLine {
   /// before anything that is missing, since a misspelt option is most often the one that is missed.
   hal::Result<Action> action;
   OnSignal on_signal = OnSignal::gives_up;
-  bool json = false;  ///< --json is given, to whichever command
+  bool json = false;         ///< --json is given, to whichever command
+  std::string stdout_owner;  ///< see OptionList
 };
 
 [[nodiscard]] CommandLine read_command_line(int argc, const char* const* argv,

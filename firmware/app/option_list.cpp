@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <limits>
 #include <system_error>
 #include <type_traits>
 
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/settings/setting.hpp"
+#include "firmware/files/output_target.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
@@ -135,10 +137,30 @@ Option& OptionList::at(std::string_view name) {
   return *std::find_if(rows_.begin(), rows_.end(), [&](const Option& row) { return row.name == name; });
 }
 
+hal::Result<std::string> OptionList::stdout_owner() const {
+  constexpr int standard_output = 1;
+  std::string owner = wants_json_ ? "--json" : "";
+  std::map<std::string, std::string_view> writer;
+  for (const Option& row : rows_) {
+    if (row.writes == Writes::nothing) continue;
+    const std::string& name = *std::get<std::string*>(std::get<Target>(row.target));
+    if (name.empty()) continue;
+    const auto stream = named_stream(name);
+    TRY(need(!stream || row.writes == Writes::file, row.name, "is '" + name + "', a stream, expected a folder"));
+    if (stream == standard_output) {
+      TRY(need(owner.empty(), row.name, "cannot go with " + owner + ": both would write to the standard output"));
+      owner = row.name;
+    }
+    const auto [at, first] = writer.emplace(std::filesystem::path(name).lexically_normal().string(), row.name);
+    TRY(need(first, row.name, fmt::format("is '{}', into which {} writes already", excerpt(name), at->second)));
+  }
+  return owner;
+}
+
 Option& OptionList::put(std::string name, std::variant<Target, Switch> target, std::string meaning) {
   const auto* value = std::get_if<Target>(&target);
   Check check = value != nullptr ? readable(*value) : Check();
-  return rows_.emplace_back(Option{std::move(name), target, std::move(meaning), {}, std::move(check), {}, {}, false});
+  return rows_.emplace_back(Option{std::move(name), target, std::move(meaning), {}, std::move(check), {}, {}});
 }
 
 Check length_mm() {

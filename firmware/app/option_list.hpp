@@ -50,6 +50,9 @@ using Target = std::variant<std::string*, int*, std::int64_t*, std::uint64_t*, d
                             std::optional<int>*, std::optional<std::int64_t>*, std::optional<std::uint64_t>*,
                             std::optional<double>*, std::vector<std::string>*, std::vector<double>*>;
 
+/// What the text of an option names that is written.
+enum class Writes : std::uint8_t { nothing, file, folder };
+
 /// An option without a value: what is set to what.
 struct Switch {
   std::variant<bool*, std::optional<bool>*> target;
@@ -66,12 +69,14 @@ struct Option {
   std::vector<std::string> excluded;
   std::vector<std::string> needed;
   bool is_required = false;
+  Writes writes = Writes::nothing;
 
   Option& type(std::string word) { return type_name = std::move(word), *this; }
   Option& where(Check complains) { return check = std::move(complains), *this; }
   Option& excludes(std::string other) { return excluded.push_back(std::move(other)), *this; }
   Option& needs(std::string other) { return needed.push_back(std::move(other)), *this; }
   Option& required() { return is_required = true, *this; }
+  Option& output(Writes what = Writes::file) { return writes = what, *this; }
 };
 
 /// The options of a command in the order of its --help. What they point to must outlive the reading of the line.
@@ -99,6 +104,10 @@ class OptionList {
 
   [[nodiscard]] const std::deque<Option>& rows() const noexcept { return rows_; }
   [[nodiscard]] bool wants_json() const noexcept { return wants_json_; }
+  /// Once the line is read: the option that has standard output to itself ("--json", or one whose file is "-"), empty
+  /// when the report may go there. Error usage at an option that would write into another's output, and at a folder
+  /// that is no folder but a stream.
+  [[nodiscard]] hal::Result<std::string> stdout_owner() const;
 
  private:
   Option& put(std::string name, std::variant<Target, Switch> target, std::string meaning);

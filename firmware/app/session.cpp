@@ -66,9 +66,10 @@ Session::~Session() {
   end_watching();
 }
 
-void Session::begin(OnSignal on_signal, bool json) {
+void Session::begin(OnSignal on_signal, bool json, std::string stdout_owner) {
   on_signal_ = on_signal;
   json_ = json;
+  stdout_owner_ = std::move(stdout_owner);
   sigemptyset(&signals_);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGTSTP}) add_unless_ignored(signals_, signal);
   sigaddset(&signals_, SIGCONT);
@@ -205,18 +206,8 @@ hal::Result<void> Session::print(const std::string& text) {
   return print_text(text, out_, patience());
 }
 
-hal::Result<void> Session::share_output(std::string_view option, const std::string& file) {
-  if (file.empty() || named_stream(file) != 1) return {};
-  if (json_) {
-    return hal::fail(hal::ErrorCode::usage, std::string(option),
-                     "cannot go with --json: both would write to the standard output");
-  }
-  data_on_stdout_ = true;
-  return {};
-}
-
 hal::Result<void> Session::print(Figures figures) {
-  if (!json_) return print_text(figures.text(), data_on_stdout_ ? err_ : out_, patience());
+  if (!json_) return print_text(figures.text(), stdout_owner_.empty() ? out_ : err_, patience());
   report_ = std::move(figures);
   return {};
 }

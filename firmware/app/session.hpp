@@ -70,11 +70,14 @@ class Session {
   ~Session();
 
   /// Before the command begins. Signals that the parent had ignored (nohup, a shell's background job) stay ignored.
-  void begin(OnSignal on_signal, bool json);
+  /// `stdout_owner` names the option that has standard output to itself, if any: the report as text then goes to
+  /// stderr.
+  void begin(OnSignal on_signal, bool json, std::string stdout_owner = {});
 
   [[nodiscard]] hal::Clock& clock() noexcept { return clock_; }
   /// One object on standard output, and nothing else, whether the command succeeds or fails.
   [[nodiscard]] bool json() const noexcept { return json_; }
+  [[nodiscard]] const std::string& stdout_owner() const noexcept { return stdout_owner_; }
 
   // Stopping.
 
@@ -101,9 +104,6 @@ class Session {
   void say(std::string_view line);
   /// A sentence beside the report, on stderr.
   void note(std::string_view sentence);
-  /// The data that `option` names as `file` may be standard output: then the report as text goes to stderr. Error usage
-  /// with --json, whose object needs standard output for itself.
-  [[nodiscard]] hal::Result<void> share_output(std::string_view option, const std::string& file);
   /// The report of the command, which prints one only: as text at once, or with --json as one object when the command
   /// has ended, with a failure after it as its member "error". Error io or no_space when standard output refuses it.
   [[nodiscard]] hal::Result<void> print(Figures figures);
@@ -125,7 +125,7 @@ class Session {
   hal::MonotonicClock clock_;
   bool json_ = false;
   OutputStream out_{1}, err_{2};
-  bool data_on_stdout_ = false;
+  std::string stdout_owner_;
   std::optional<Figures> report_;  // to be printed at the end, with --json
   std::optional<ProgressReporter> reporter_;
 

@@ -180,8 +180,8 @@ Action declare(OptionList& options) {
   auto o = std::make_shared<CompareRequest>();
   add_samples(options, *o);
   add_contenders(options, *o);
-  options.add("--sheet", o->sheet, "contact sheet PNG with every picture");
-  options.add("--csv", o->csv, "file with a line a solver and basis");
+  options.add("--sheet", o->sheet, "contact sheet PNG with every picture").output();
+  options.add("--csv", o->csv, "file with a line a solver and basis").output();
   options.json("print one object with every figure and nothing else on stdout");
   return action_of(o, run_compare);
 }

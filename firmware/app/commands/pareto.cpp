@@ -116,7 +116,8 @@ std::string footer() {
 Action declare(OptionList& options) {
   auto o = std::make_shared<ParetoRequest>();
   options.add("--board", o->board, "folder of the board, such as boards/sim-8x8");
-  options.add("--out", o->out, "folder for the CSV and the plots; made when missing (default: none)");
+  options.add("--out", o->out, "folder for the CSV and the plots; made when missing (default: none)")
+      .output(Writes::folder);
   options.flag("--quick", o->quick, "few iterations of every solver and fewer timed frames: a first look");
   options.add("--budget", o->budget_s,
               "seconds after which no new point is begun, 0 = no end (default 600, with --quick 30)");

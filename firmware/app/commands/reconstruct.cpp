@@ -155,8 +155,6 @@ Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& 
 
 /// Samples from a file become pictures in files, and a report on stdout. Either every output appears or none.
 Result<void> reconstruct(const ReconstructOptions& o, Session& session) {
-  TRY(session.share_output("--out", o.out));
-  TRY(session.share_output("--png", o.png));
   const ProblemStatement problem = TRY(problem_of(o));
   Inputs inputs = TRY(read_inputs(o, problem, session));
   PictureOutputs outputs = TRY(PictureOutputs::create(

@@ -28,12 +28,15 @@ void add_files(OptionList& options, ReconstructOptions& o) {
   options.add("--weights", o.weights, "weights >= 0: .npy of (M,) or (frames, M); 0 = channel missing").type("FILE");
   options.add("--truth", o.truth, "true picture(s): .npy of (H, W) or (frames, H, W), for NMSE, PSNR, SSIM")
       .type("FILE");
-  options.add("--out", o.out, "x: .npy of (H, W), or (frames, H, W) when the samples have a frames axis").type("FILE");
+  options.add("--out", o.out, "x: .npy of (H, W), or (frames, H, W) when the samples have a frames axis")
+      .type("FILE")
+      .output();
   options
       .add("--png", o.png,
            "8-bit picture, 0..1 from black to white; several frames become a numbered series: x.png gives "
            "x-0000.png, x-0001.png ...")
-      .type("FILE");
+      .type("FILE")
+      .output();
 }
 
 void add_problem(OptionList& options, ReconstructOptions& o) {

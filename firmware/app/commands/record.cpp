@@ -125,7 +125,6 @@ Figures report_of(const Board& board, const std::string& scene, const RecordingS
 /// Records a board's eye until there are enough frames, the time is over, the user stops it or the file fails; what was
 /// recorded until then stays. Prints what is in the file.
 Result<void> record(const RecordRequest& o, Session& session) {
-  TRY(session.share_output("--out", o.out));
   TRY(check(o));
   Board board = TRY(load_board(o.board));
   TRY(check_new_recording(o.out));
@@ -145,7 +144,7 @@ Result<void> record(const RecordRequest& o, Session& session) {
 Action declare(OptionList& options) {
   auto o = std::make_shared<RecordRequest>();
   options.add("--board", o->board, "folder of the board, such as boards/sim-8x8");
-  options.add("--out", o->out, "the recording, such as eye.rec; an older one is never overwritten");
+  options.add("--out", o->out, "the recording, such as eye.rec; an older one is never overwritten").output();
   options.add("--frames", o->frames, "end after so many; 0: until stopped (default: the board's frames_per_scene)");
   options.add("--seconds", o->seconds, "end after so long").excludes("--frames");
   options.scene(o->scene, o->seed);

@@ -67,7 +67,6 @@ Figures& add_written(const std::string& out, Figures& f) {
 /// The response that a board's geometry gives, or one as a calibration of such an eye might find it, as a file, and its
 /// figures on stdout.
 Result<void> write_nominal(const ResponseRequest& o, Session& session) {
-  TRY(session.share_output("--out", o.out));
   Board board = TRY(load_board(o.board));
   TRY(o.overrides.apply(board));
   TRY(try_response_output(o.out, board.eye.ommatidia(), board.object.pixels()));
@@ -93,6 +92,7 @@ Action declare(OptionList& options) {
   options
       .add("--out", o->out,
            "A as .mtx (sparse, exact) or .npy (dense float32, at most 1 GiB); without it only the figures")
+      .output()
       .type("FILE");
   options.settings("response", o->overrides);
   options

@@ -340,8 +340,6 @@ Result<void> BoardRun::verdict() const {
 Result<void> run_board(const RunOptions& options, Session& session) {
   if (options.table == "header") return session.print(table_header());
   TRY(options.check());
-  TRY(session.share_output("--report", options.report));
-  TRY(session.share_output("--record", options.record));
   return BoardRun(options, session).run();
 }
 

@@ -30,8 +30,8 @@ struct RunOptions {
   Overrides overrides;  ///< iterations, threads, lambda, sigma, distance
   std::string sheet;
   std::string report;
-  std::string table;  ///< header, row or both; empty: no table
-  bool json = false;  ///< the report is to be an object
+  std::string table;         ///< header, row or both; empty: no table
+  std::string stdout_owner;  ///< the option that has standard output to itself, if any
 
   /// Contradictions and values out of range. Error usage names the option.
   [[nodiscard]] hal::Result<void> check() const;

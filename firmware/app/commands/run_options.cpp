@@ -51,7 +51,7 @@ void add_scene_options(OptionList& options, RunOptions& o) {
       .excludes("--seed");
   options.add("--pace", o.replay_pace, "of a replay: fast (default; every frame is waited for) or recorded")
       .where(one_of({"fast", "recorded"}));
-  options.add("--record", o.record, "file for the raw frames besides, for --replay; never overwritten");
+  options.add("--record", o.record, "file for the raw frames besides, for --replay; never overwritten").output();
   options
       .flag("--stop-if-unrecorded", o.stop_if_unrecorded,
             "end the run when the recording fails, on a full disk for example (default: say so and go on)")
@@ -74,10 +74,10 @@ void add_solver_options(OptionList& options, RunOptions& o) {
 }
 
 void add_output_options(OptionList& options, RunOptions& o) {
-  options.add("--out", o.out, "folder for the pictures; made when missing");
+  options.add("--out", o.out, "folder for the pictures; made when missing").output(Writes::folder);
   options.add("--format", o.format, sink_formats_text()).where(one_of(sink_formats()));
-  options.add("--sheet", o.sheet, "contact sheet PNG: scene, conventional eye, reconstruction, error");
-  options.add("--report", o.report, "file for the object that --json prints");
+  options.add("--sheet", o.sheet, "contact sheet PNG: scene, conventional eye, reconstruction, error").output();
+  options.add("--report", o.report, "file for the object that --json prints").output();
   options.add("--table", o.table, "print a table instead: its header only, this run's row, or both")
       .where(one_of({"header", "row", "both"}));
   options.json("print one object with every figure and nothing else on stdout");
@@ -96,7 +96,7 @@ Action declare(OptionList& options) {
   options.flag("--show", o->show, "show pictures in the terminal (default: when stdout is one)");
   options.flag("--no-show", o->show, "do not", false).excludes("--show");
   return [o](Session& session) {
-    o->json = session.json();
+    o->stdout_owner = session.stdout_owner();
     return run_board(*o, session);
   };
 }
@@ -105,6 +105,7 @@ Action declare(OptionList& options) {
 
 Result<void> RunOptions::check() const {
   constexpr double longest_ms = 1e9, most_frames = 1e15;
+  const std::string beside_owner = "cannot go with " + stdout_owner + ": both would write to the standard output";
   for (const auto& checked :
        {within("--frames", frames, 0, false, most_frames), within("--deadline", deadline_ms, 0, true, longest_ms),
         need(!(deadline_ms && lossless), "--deadline",
@@ -116,9 +117,8 @@ Result<void> RunOptions::check() const {
         need(!replays() || record.empty(), "--record", "cannot go with --replay: the frames are in that file already"),
         need(sheet.empty() || knows_scene(), "--sheet",
              "needs --scene with --replay: it compares the picture with the scene that was recorded"),
-        need(!(json && show.value_or(false)), "--show",
-             "cannot go with --json: both would write to the standard output"),
-        need(!json || table.empty(), "--table", "cannot go with --json: both would write to the standard output"),
+        need(stdout_owner.empty() || !show.value_or(false), "--show", beside_owner),
+        need(stdout_owner.empty() || table.empty(), "--table", beside_owner),
         need(out.empty() || output_format() != "none", "--out", "does nothing with --format none"),
         need(!out.empty() || format.empty() || format == "none", "--format", "needs a folder: add --out DIR"),
         need(!board.empty(), "--board", "is missing, for example --board boards/sim-8x8")}) {

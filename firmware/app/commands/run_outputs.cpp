@@ -69,7 +69,7 @@ bool shows_pictures(const RunOptions& options) {
   const bool terminal = ::isatty(STDOUT_FILENO) == 1;
   if (terminal && !terminal_can_draw()) return false;
   if (options.show) return *options.show;
-  return !options.json && options.table.empty() && terminal;
+  return options.stdout_owner.empty() && options.table.empty() && terminal;
 }
 
 RunSinks make_sinks(const RunOptions& options, Session& session, const LiveStatus& status,

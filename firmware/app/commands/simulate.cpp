@@ -162,8 +162,6 @@ Figures report_of(const Board& board, const sim::Scene& scene, const Samples& sa
 /// Writes the samples of a board's simulated eye: float32, (M,) for one frame and (frames, M) for more, by ommatidium,
 /// in units of one fully seen white pixel with dark level and LSB taken out; channels that tell nothing are NaN.
 Result<void> simulate(const SimulateRequest& request, Session& session) {
-  TRY(session.share_output("--out", request.out));
-  TRY(session.share_output("--truth", request.truth));
   TRY(check(request));
   Board board = TRY(load_board(request.board));
   TRY(request.overrides.apply(board));
@@ -180,14 +178,14 @@ Action declare(OptionList& options) {
   auto o = std::make_shared<SimulateRequest>();
   options.add("--board", o->board, "folder of the board, such as boards/sim-8x8").required();
   options.scene(o->scene, o->seed);
-  options.add("--out", o->out, ".npy file for the samples, (M,) or (frames, M)");
+  options.add("--out", o->out, ".npy file for the samples, (M,) or (frames, M)").output();
   options.add("--frames", o->frames, "how many (default 1)");
   options.settings("simulate", o->overrides);
   options.add("--scene-distance", o->scene.distance_mm, "of the scene alone, mm from the lens tip").where(length_mm());
   options.flag("--noise-free", o->noise_free, "exact signals: no read noise, no rounding (with --codes: rounded)");
   options.flag("--codes", o->codes, "raw codes instead of corrected samples");
-  options.add("--truth", o->truth, ".npy file for the scene on the object plane's pixels, (rows, columns)");
-  options.add("--weights", o->weights, ".npy file for weights shaped like the samples, 0 = tells nothing");
+  options.add("--truth", o->truth, ".npy file for the scene on the object plane's pixels, (rows, columns)").output();
+  options.add("--weights", o->weights, ".npy file for weights shaped like the samples, 0 = tells nothing").output();
   options.flag("--explain", o->explain, "print which effects are on and off; works without --out too");
   options.json("print one object and nothing else on stdout");
   return action_of(o, simulate);

@@ -116,7 +116,8 @@ Action declare(OptionList& options) {
       .where(one_of(recon::words_of(recon::constraint_names())));
   options.add("--iterations", o->iterations, "of each run (default 300)");
   options.add("--seed", o->seed, "of picture and noise (default 1)");
-  options.add("--out", o->out, "folder for the CSV and the plot; made when missing (default: none)");
+  options.add("--out", o->out, "folder for the CSV and the plot; made when missing (default: none)")
+      .output(Writes::folder);
   options.json("print one object with every figure and nothing else on stdout");
   return action_of(o, run_stability);
 }

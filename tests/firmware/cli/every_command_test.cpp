@@ -119,6 +119,37 @@ TEST_CASE("every command fails as an object under --json: wrong usage and what g
   }
 }
 
+TEST_CASE("no output of any command goes into another, and a folder is none by the name of a stream") {
+  const ScratchProblem problem;
+  for (const firmware::Command* command : firmware::commands()) {
+    const std::string given = std::string(command->name) + " " + failing.at(command->name).arguments;
+    std::vector<std::string> files;
+    for (const firmware::Option& option : options_of(*command)) {
+      if (option.writes == firmware::Writes::nothing || given.find(option.name) != std::string::npos) continue;
+      CAPTURE(given + " " + option.name);
+      const auto refused = [&](const std::string& with, std::string_view named) {
+        check_refused(problem, given + with, hal::ErrorCode::usage, option.name, {std::string(named)});
+      };
+      if (option.writes == firmware::Writes::folder) {
+        refused(" " + option.name + " -", "'-'");
+        refused(" " + option.name + " /dev/stdout", "'/dev/stdout'");
+        continue;
+      }
+      refused(" " + option.name + " -", "--json");  // which check_refused() adds
+      for (const std::string& other : files) {
+        const Outcome both =
+            run_compueye(given + " " + other + " - " + option.name + " /dev/stdout", problem.folder().path());
+        CHECK(both.exit_code == 2);
+        CHECK(both.out.empty());
+        CHECK(both.err.starts_with("compueye: " + option.name + ": "));
+        CHECK(both.err.find(other) != std::string::npos);
+        refused(" " + other + " same " + option.name + " ./same", other);
+      }
+      files.push_back(option.name);
+    }
+  }
+}
+
 TEST_CASE("a command that is no command names the nearest, as an object too") {
   const ScratchProblem problem;
   const auto error = error_of(run_compueye("simulat --json", problem.folder().path()), 2);

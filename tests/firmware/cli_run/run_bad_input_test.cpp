@@ -65,6 +65,21 @@ TEST_CASE("wrong usage ends with exit code 2 and names the option and the value"
   check_refused({"run"}, ErrorCode::usage, "--board", {});
 }
 
+TEST_CASE("what is shown or tabled does not mix with a file on standard output") {
+  const CopiedBoard board;
+  for (const std::string file : {"--record", "--report", "--sheet"}) {
+    for (const std::vector<std::string>& told : {std::vector<std::string>{"--show"}, {"--table", "row"}}) {
+      std::vector<std::string> arguments{"run", "--board", board.path().string(), file, "-"};
+      arguments.insert(arguments.end(), told.begin(), told.end());
+      const Ended ended = compueye::test::compueye(arguments);
+      CHECK(ended.exit_code == 2);
+      CHECK(ended.out.empty());
+      CHECK(ended.err.starts_with("compueye: " + told.front() + ": "));
+      CHECK(ended.err.find(file) != std::string::npos);
+    }
+  }
+}
+
 TEST_CASE("a scene that saturates the sensor is refused, because nothing would ever be delivered") {
   const CopiedBoard board;
   board.change("full_scale = 128", "full_scale = 3");
