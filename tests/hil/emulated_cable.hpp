@@ -51,6 +51,9 @@ class EmulatedCable {
     inject({.kind = same ? protocol::FaultKind::unplug : protocol::FaultKind::replug_other,
             .duration_ns = 1,
             .text = serial});
+    // Whoever asks next finds the one that is back, whether or not anybody has looked since.
+    pass(1);
+    static_cast<void>(attachment());
   }
   [[nodiscard]] std::uint64_t attachment() {
     return with([](auto& device, std::int64_t now_ns) { return device.attachment(now_ns); });

@@ -169,7 +169,9 @@ void check_unplugging(AnyBench& bench, const std::string& serial, const std::str
   bench.port.unplug(serial);
   bench.port.plug();
   wait_for_boot(bench.port);
-  REQUIRE(bench.host.start());
+  const auto started = bench.host.start();
+  INFO((started ? "" : started.error().text()));
+  REQUIRE(started);
   const auto block = bench.host.frame();
   REQUIRE(block);
   CHECK(bench.host.right(*block, 0));
