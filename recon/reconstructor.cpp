@@ -15,6 +15,7 @@
 #include "recon/setup/penalty_rule.hpp"
 #include "recon/setup/quantised_response.hpp"
 #include "recon/setup/solver_row.hpp"
+#include "recon/setup/tall_response.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::recon {
@@ -119,7 +120,9 @@ hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& resp
 Factor Reconstructor::wanted_factor(const Response& response, const Objective& objective, const Plan& plan) {
   const auto order = static_cast<int>(response.seeing_rows().size());
   const MetricKind metric = metric_of(plan.solver, objective.basis);
-  if (plan.solver->factor == FactorUse::modes) return {0.0, order, {}, metric, plan.solver->rank_by_rule(plan, order)};
+  if (plan.solver->factor == FactorUse::modes) {
+    return {0.0, order, {}, metric, plan.solver->rank_by_rule(plan, mode_count(order, response.cols()))};
+  }
   return {resolve_rho(response, objective, plan), order, {}, metric, 0};
 }
 

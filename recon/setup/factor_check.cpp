@@ -88,8 +88,8 @@ bool are_modes(std::span<const float> modes, int rank, const Response& seeing, c
     }
     std::vector<double> expected(rows, 0.0), start(rows, 0.0), kept = wanted;
     for (std::size_t k = 0; k < count; ++k) kept[k] = scaled[k] == 0.0 ? 0.0 : wanted[k];
-    const std::vector<double> along = combined(vectors, wanted, order);
-    if (std::abs(squared(along) - squared(wanted)) > most_residual * squared(wanted)) return false;
+    const std::vector<double> along = combined(vectors, kept, order);
+    if (std::abs(squared(along) - squared(kept)) > most_residual * squared(kept)) return false;
     add_to_rows(classes, c, combined(vectors, kept, order), expected);
     add_to_rows(classes, c, combined(vectors, scaled, order), start);
     seeing.adjoint(start, back);

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
+#include "hal/try.hpp"
 #include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
 #include "recon/setup/symmetric_modes.hpp"
+#include "recon/setup/tall_response.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -38,7 +41,30 @@ void append(const SymmetricModes& pairs, std::size_t count, std::vector<float>& 
   }
 }
 
+/// From the right ones, as packed as those of one class.
+hal::Result<std::vector<float>> modes_of_tall(const Response& seeing, int rank, const Progress& progress) {
+  constexpr double least_share = 1e-6;  // below it A v / s is no unit vector
+  const RightPairs pairs = TRY(right_pairs(seeing, progress));
+  const Eigen::Index count = std::min<Eigen::Index>(rank, seeing.rows()), all = pairs.values.size();
+  Eigen::Index kept = 0;
+  while (kept < std::min(count, all) && pairs.values[kept] > least_share * pairs.values[0]) ++kept;
+  const double next = kept < all ? pairs.values[kept] * pairs.values[kept] : 0.0;
+  std::vector<float> packed(static_cast<std::size_t>(count) + 1, static_cast<float>(next));
+  Eigen::MatrixXd scaled = Eigen::MatrixXd::Zero(seeing.cols(), count);
+  for (Eigen::Index k = 0; k < kept; ++k) {
+    packed[static_cast<std::size_t>(k)] = static_cast<float>(pairs.values[k] * pairs.values[k]);
+    scaled.col(k) = pairs.vectors.col(k) / pairs.values[k];
+  }
+  const std::vector<float> left = TRY(rows_times<float>(seeing, scaled, progress));
+  packed.insert(packed.end(), left.begin(), left.end());
+  return packed;
+}
+
 }  // namespace
+
+ParityClasses mode_classes(const Response& seeing) {
+  return is_tall(seeing) ? ParityClasses(seeing.rows()) : ParityClasses(seeing.rows(), find_mirror_symmetry(seeing));
+}
 
 std::size_t modes_of_class(const ParityClasses& classes, std::size_t parity_class, int rank) noexcept {
   const auto order = static_cast<std::size_t>(classes.order(parity_class));
@@ -56,6 +82,7 @@ std::size_t modes_size(const ParityClasses& classes, int rank) noexcept {
 }
 
 hal::Result<std::vector<float>> leading_modes(const Response& seeing, int rank, const Progress& progress) {
+  if (is_tall(seeing)) return modes_of_tall(seeing, rank, progress);
   ParityGram gram(seeing, MetricKind::identity);
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
   const ParityClasses& classes = gram.classes();

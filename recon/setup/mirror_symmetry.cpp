@@ -123,12 +123,16 @@ class MirrorSearch {
   double tolerance_ = 0.0;
 };
 
+MirrorSymmetry no_symmetry(int rows) {
+  Permutation identity(static_cast<std::size_t>(rows));
+  std::iota(identity.begin(), identity.end(), 0);
+  return {{std::move(identity)}, {{1}}};
+}
+
 }  // namespace
 
 MirrorSymmetry find_mirror_symmetry(const Response& response) {
-  Permutation identity(static_cast<std::size_t>(response.rows()));
-  std::iota(identity.begin(), identity.end(), 0);
-  MirrorSymmetry symmetry{{identity}, {{1}}};
+  MirrorSymmetry symmetry = no_symmetry(response.rows());
   if (response.image_cols() == 0) return symmetry;
   MirrorSearch search(response);
   const auto left_right = search.find({.left_right = true});
@@ -142,7 +146,7 @@ MirrorSymmetry find_mirror_symmetry(const Response& response) {
     symmetry.characters = {{1, 1}, {1, -1}};
   }
   if (left_right && up_down) {
-    Permutation both(identity.size());
+    Permutation both(left_right->size());
     for (std::size_t m = 0; m < both.size(); ++m) both[m] = (*left_right)[static_cast<std::size_t>((*up_down)[m])];
     symmetry.permutations.push_back(std::move(both));
     symmetry.characters = {{1, 1, 1, 1}, {1, -1, 1, -1}, {1, 1, -1, -1}, {1, -1, -1, 1}};
@@ -159,6 +163,8 @@ ParityClasses::ParityClasses(int rows, MirrorSymmetry symmetry) : symmetry_(std:
   find_orbits(rows);
   find_positions();
 }
+
+ParityClasses::ParityClasses(int rows) : ParityClasses(rows, no_symmetry(rows)) {}
 
 double ParityClasses::share(std::size_t c, int m) const noexcept {
   const Place place = places_[static_cast<std::size_t>(m)];

@@ -34,6 +34,8 @@ struct MirrorSymmetry {
 class ParityClasses {
  public:
   ParityClasses(int rows, MirrorSymmetry symmetry);
+  /// One class, whatever mirrors there are.
+  explicit ParityClasses(int rows);
 
   struct Orbit {
     int first = 0;       ///< its lowest row

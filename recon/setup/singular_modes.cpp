@@ -5,10 +5,12 @@
 #include <string>
 #include <utility>
 
+#include "hal/try.hpp"
 #include "recon/problem/number_text.hpp"
 #include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
 #include "recon/setup/symmetric_modes.hpp"
+#include "recon/setup/tall_response.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -57,9 +59,26 @@ hal::Result<std::vector<Mode>> chosen_modes(std::vector<Mode> modes, int rank, d
   return modes;
 }
 
+/// From A = Q R: the left vectors are A V S^-1.
+hal::Result<ModeTable> modes_of_tall(const Response& seeing, int rank, double least_square, const Progress& progress) {
+  const RightPairs pairs = TRY(right_pairs(seeing, progress));
+  const std::vector<Mode> modes =
+      TRY(chosen_modes(sorted_modes({pairs.values.array().square().matrix()}), rank, least_square));
+  ModeTable table;
+  table.order = seeing.rows();
+  Eigen::MatrixXd scaled(seeing.cols(), static_cast<Eigen::Index>(modes.size()));
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    table.values.push_back(pairs.values[modes[k].column]);
+    scaled.col(static_cast<Eigen::Index>(k)) = pairs.vectors.col(modes[k].column) / table.values.back();
+  }
+  table.left = TRY(rows_times<double>(seeing, scaled, progress));
+  return table;
+}
+
 }  // namespace
 
 hal::Result<ModeTable> singular_modes(const Response& seeing, int rank, double least_square, const Progress& progress) {
+  if (is_tall(seeing)) return modes_of_tall(seeing, rank, least_square, progress);
   ParityGram gram(seeing, MetricKind::identity);
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
   std::vector<Eigen::VectorXd> squares(gram.classes().count());

@@ -14,10 +14,10 @@ struct ModeTable {
 };
 
 /// The singular pairs of A that stand above rounding (s > 1e-6 s_max), in double, from the eigenvectors of A A' in each
-/// parity class; at most `rank` of them (0: all), and only those with s^2 >= `least_square`. `seeing` has no blind
-/// rows. Cubic in the number of rows: a quarter of a minute for 4,564 rows that are mirror symmetric, many minutes for
-/// as many that are not. Errors: interrupted; out_of_range when fewer than `rank` pairs stand above rounding, or none
-/// reaches least_square.
+/// parity class, or of a tall A from those of its triangle; at most `rank` of them (0: all), and only those with s^2 >=
+/// `least_square`. `seeing` has no blind rows. Cubic in the shorter side: a quarter of a minute for 4,564 rows that are
+/// mirror symmetric, many minutes for as many that are not. Errors: interrupted; out_of_range when fewer than `rank`
+/// pairs stand above rounding, or none reaches least_square.
 [[nodiscard]] hal::Result<ModeTable> singular_modes(const Response& seeing, int rank, double least_square,
                                                     const Progress& progress);
 

@@ -107,7 +107,7 @@ struct SolverRow {
   hal::Result<void> (*check)(const Objective& objective, const Plan& plan) = nullptr;
   /// rho by rule where it is not that of penalty_rule.hpp; null: it is.
   double (*rho_by_rule)(const Response& response, const Objective& objective, const Plan& plan) = nullptr;
-  /// The rank by rule of `order` seeing rows, where the factor has one.
+  /// The rank by rule of `order` modes, where the factor has one.
   int (*rank_by_rule)(const Plan& plan, int order) noexcept = nullptr;
   /// The penalties that a frame goes through where rho is by rule; null: rho alone.
   PenaltyLevels (*penalties)(const Objective& objective, const Plan& plan, int order, bool mirror_symmetric) = nullptr;

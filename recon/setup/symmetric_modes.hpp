@@ -20,4 +20,7 @@ struct SymmetricModes {
 /// did not settle.
 [[nodiscard]] bool largest_modes(const Eigen::MatrixXd& matrix, Eigen::Index count, SymmetricModes& modes);
 
+/// All singular values of a square matrix, largest first, and its right singular vectors, column by column.
+void right_singular_pairs(const Eigen::MatrixXd& matrix, Eigen::VectorXd& values, Eigen::MatrixXd& vectors);
+
 }  // namespace compueye::recon

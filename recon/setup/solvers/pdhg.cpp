@@ -4,10 +4,10 @@
 
 #include "recon/setup/dual_step_tables.hpp"
 #include "recon/setup/factor_check.hpp"
-#include "recon/setup/inverse_tables.hpp"
 #include "recon/setup/leading_modes.hpp"
 #include "recon/setup/penalty_rule.hpp"
 #include "recon/setup/solver_row_of.hpp"
+#include "recon/setup/tall_response.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -15,8 +15,8 @@ namespace {
 constexpr int least_by_rule = 400;
 constexpr int rows_a_mode = 12;
 
-/// How many modes of A A' pdhg treats exactly: plan.rank when given, else 400 or a twelfth of the rows, at most all. On
-/// the 80x80 eye (line art, DCT, sigma^2 = .1) 100, 200, 400 and 800 modes come within 5 % of the converged NMSE in
+/// How many of the `order` modes of A A' pdhg treats exactly: plan.rank when given, else 400 or a twelfth, at most all.
+/// On the 80x80 eye (line art, DCT, sigma^2 = .1) 100, 200, 400 and 800 modes come within 5 % of the converged NMSE in
 /// more than 40, 40, 18 and 13 iterations; each 400 cost a quarter of an iteration and .9 MB. On the 120x120 eye 400
 /// and 800 take 50 and 29.
 int rank_by_rule(const Plan& plan, int order) noexcept {
@@ -41,7 +41,7 @@ constexpr double share_with_every_mode = 0.06, share_with_few_modes = 0.021;
 /// 30 dB, 2, 2 and more than 60. The whole norm even where single rows
 /// are far louder than the others, because the strongest mode bounds the steps.
 double rho_by_rule(const Response& response, const Objective&, const Plan& plan) {
-  const auto order = static_cast<int>(response.seeing_rows().size());
+  const int order = mode_count(static_cast<int>(response.seeing_rows().size()), response.cols());
   const double by_rows = response.squared_norm() / response.cols();
   return (rank_by_rule(plan, order) == order ? share_with_every_mode : share_with_few_modes) * by_rows;
 }
@@ -92,15 +92,15 @@ struct Method {
   static hal::Result<std::shared_ptr<core::FrameProblem<T>>> prepare(SetUp<T>& from) {
     auto problem = TRY(begin_problem<core::PdhgProblem<T>>(from));
     const Plan& plan = from.plan;
-    const double share = basis_share(from.objective.basis, plan.rank >= from.seeing.rows());
+    const int modes = mode_count(from.seeing.rows(), from.seeing.cols());
+    const double share = basis_share(from.objective.basis, plan.rank >= modes);
     problem->rho = static_cast<T>(plan.rho);
     problem->basis_step = static_cast<T>(share * plan.rho / problem->psi.squared_norm());
     problem->relaxation = static_cast<T>(plan.relaxation);
     problem->warm_start = plan.warm_start;
-    const ParityClasses classes = classes_of(from);
+    const ParityClasses classes = mode_classes(from.seeing);
     TRY(find_modes(from, classes));
-    const PenaltyLevels levels =
-        penalty_levels(from.objective, plan, from.rho_by_rule, classes.rows(), classes.count() > 1);
+    const PenaltyLevels levels = penalty_levels(from.objective, plan, from.rho_by_rule, modes, classes.count() > 1);
     problem->schedule = schedule_of<T>(levels, from.kept);
     problem->dual_step =
         from.kept.keep_view(TRY(dual_step_tables<T>(classes, from.factor.values, plan.rank, levels.penalties, share)));
