@@ -136,7 +136,7 @@ class RiskSearch {
 
   Result<LambdaTrial> trial(const Objective& objective, double k) {
     auto solver = TRY(Reconstructor::create(response_, objective, plan_, found_.factor, progress_));
-    if (!found_.factor && reusable_factor()) found_.factor = solver.factor();
+    if (!found_.factor && reusable_factor() && solver.factor().order > 0) found_.factor = solver.factor();
     const Explained seen = TRY(explained(solver, frame_.y));
     const Explained moved = TRY(explained(solver, probed_));
     double misfit = 0.0, followed = 0.0, left = 0.0, all = 0.0;

@@ -14,8 +14,8 @@
 #include "recon/setup/operator_list.hpp"
 #include "recon/setup/penalty_rule.hpp"
 #include "recon/setup/quantised_response.hpp"
+#include "recon/setup/shorter_side.hpp"
 #include "recon/setup/solver_row.hpp"
-#include "recon/setup/tall_response.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::recon {
@@ -55,7 +55,7 @@ struct Reconstructor::Tables {
   }
 
   [[nodiscard]] hal::Result<void> check_stored(const Factor& stored) const {
-    const bool fits = uses_factor(plan.solver) && stored.metric == factor.metric && stored.rho == factor.rho &&
+    const bool fits = factor.order > 0 && stored.metric == factor.metric && stored.rho == factor.rho &&
                       stored.order == factor.order && stored.rank == factor.rank;
     return fits ? hal::Result<void>{} : stale(stored, plan, static_cast<int>(seeing.size()));
   }
@@ -123,7 +123,8 @@ Factor Reconstructor::wanted_factor(const Response& response, const Objective& o
   if (plan.solver->factor == FactorUse::modes) {
     return {0.0, order, {}, metric, plan.solver->rank_by_rule(plan, mode_count(order, response.cols()))};
   }
-  return {resolve_rho(response, objective, plan), order, {}, metric, 0};
+  const bool kept = uses_factor(plan.solver) && !is_tall(order, response.cols());
+  return {resolve_rho(response, objective, plan), kept ? order : 0, {}, metric, 0};
 }
 
 int Reconstructor::channels() const noexcept {

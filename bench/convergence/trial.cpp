@@ -120,7 +120,7 @@ hal::Result<std::vector<recon::Reconstructor>> make_solvers(const recon::Respons
     objective.lambda = *lambda;
     auto made = recon::Reconstructor::create(response, objective, plan, factor);
     if (!made) return tl::unexpected(made.error());
-    if (recon::uses_factor(plan.solver)) factor = made->factor();
+    if (made->factor().order > 0) factor = made->factor();
     solvers.push_back(std::move(*made));
     if (same) break;
   }

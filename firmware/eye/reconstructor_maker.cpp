@@ -31,10 +31,11 @@ hal::Result<recon::Reconstructor> ReconstructorMaker::make(const recon::Objectiv
                                                            const recon::Progress& progress) {
   origin_ = FactorOrigin::made;
   // In double a factor is made anew every time: what is kept is in float32.
-  if (!recon::uses_factor(plan.solver) || plan.precision != recon::Precision::f32) {
+  const recon::Factor wanted = recon::Reconstructor::wanted_factor(response(), objective, plan);
+  if (wanted.order == 0 || plan.precision != recon::Precision::f32) {
     return recon::Reconstructor::create(response(), objective, plan, std::nullopt, progress);
   }
-  const FactorKey key = factor_key(response(), recon::Reconstructor::wanted_factor(response(), objective, plan));
+  const FactorKey key = factor_key(response(), wanted);
   auto tried = recon::Reconstructor::create(response(), objective, plan, made_before(key), progress);
   if (!tried && origin_ == FactorOrigin::kept && tried.error().code == hal::ErrorCode::stale) {
     note_unusable(tried.error());

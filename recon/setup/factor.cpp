@@ -5,13 +5,17 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <numeric>
 #include <vector>
 
+#include "hal/try.hpp"
 #include "recon/core/parts/class_inverse.hpp"
 #include "recon/problem/number_text.hpp"
 #include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
 #include "recon/setup/row_norms.hpp"
+#include "recon/setup/step_sizes.hpp"
+#include "recon/setup/tall_response.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -93,6 +97,42 @@ hal::Result<void> invert_blocks(ParityGram& gram, double rho, const std::vector<
   return hal::fail(hal::ErrorCode::interrupted, "set-up", "stopped before the factor was finished");
 }
 
+std::vector<double> packed(const Matrix& matrix) {
+  std::vector<double> values;
+  values.reserve(core::PackedSymmetric<double>::size(static_cast<std::size_t>(matrix.rows())));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = i; j < matrix.cols(); ++j) values.push_back(matrix(i, j));
+  }
+  return values;
+}
+
+/// matrix += rho (I + D'D), D the differences of neighbouring pixels.
+void add_smoothing(double rho, Eigen::Index image_rows, Eigen::Index image_cols, Matrix& matrix) {
+  const auto add_difference = [&](Eigen::Index one, Eigen::Index other) {
+    matrix(one, one) += rho;
+    matrix(other, other) += rho;
+    matrix(one, other) -= rho;
+    matrix(other, one) -= rho;
+  };
+  matrix.diagonal().array() += rho;
+  for (Eigen::Index r = 0; r < image_rows; ++r) {
+    for (Eigen::Index c = 0; c < image_cols; ++c) {
+      const Eigen::Index at = r * image_cols + c;
+      if (c + 1 < image_cols) add_difference(at, at + 1);
+      if (r + 1 < image_rows) add_difference(at, at + image_cols);
+    }
+  }
+}
+
+/// ||A||^2 with loud rows turned down: their own rounding stays in their own direction.
+double bulk_norm(const Response& seeing, double rho) {
+  const std::vector<double> scale = loud_row_scale(seeing, rho);
+  if (scale.empty()) return squared_norm_bound(seeing);
+  std::vector<std::int32_t> rows(scale.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  return squared_norm_bound(seeing.select_rows(rows, scale));
+}
+
 }  // namespace
 
 std::size_t factor_size(const ParityClasses& classes) noexcept {
@@ -120,6 +160,25 @@ hal::Result<std::vector<T>> packed_inverse(const Response& seeing, MetricKind me
     }
   }
   return packed;
+}
+
+hal::Result<PixelFactor> pixel_factor(const Response& seeing, MetricKind metric, double rho, double rounding,
+                                      const Progress& progress) {
+  const Matrix r = TRY(triangle(seeing, progress));
+  Matrix matrix = r.transpose() * r;
+  if (metric == MetricKind::identity) {
+    matrix.diagonal().array() += rho;
+  } else {
+    add_smoothing(rho, seeing.image_rows(), seeing.image_cols(), matrix);
+  }
+  PixelFactor factor{packed(matrix), {}};
+  ClassNorms norms;
+  const bool definite = invert(matrix, 0.0, {}, norms);
+  TRY(check_condition({norms}, definite, rho, 0.5 * std::numeric_limits<double>::epsilon()));
+  norms.matrix = bulk_norm(seeing, rho) + rho;
+  TRY(check_condition({norms}, definite, rho, rounding));
+  factor.inverse = packed(matrix);
+  return factor;
 }
 
 template hal::Result<std::vector<float>> packed_inverse(const Response&, MetricKind, double, const Progress&);

@@ -24,7 +24,8 @@ enum class MetricKind : std::uint8_t { identity, smoothing };
 
 /// What makes a frame cheap, made in double, kept in float32, and worth storing: it is the slow part of setting up a
 /// solver. Either the inverse packed_inverse() of the seeing rows, a packed upper triangle by rows for each
-/// parity class, one after the other; or, for pdhg, the leading modes of A A' (recon/setup/leading_modes.hpp).
+/// parity class, one after the other; or, for pdhg, the leading modes of A A' (recon/setup/leading_modes.hpp). The
+/// inverse of a tall response is made within seconds, and not kept: order 0.
 struct Factor {
   double rho = 0.0;           ///< of an inverse; modes serve every rho
   int order = 0;              ///< number of seeing rows
@@ -46,5 +47,14 @@ class ParityClasses;
 template <class T>
 [[nodiscard]] hal::Result<std::vector<T>> packed_inverse(const Response& seeing, MetricKind metric, double rho,
                                                          const Progress& progress);
+
+/// A'A + rho K0 of a tall response, and its inverse, packed upper triangles by rows, from A = Q R in double.
+struct PixelFactor {
+  std::vector<double> matrix, inverse;
+};
+
+/// `rounding` is that of the frame's numbers, half their epsilon. Errors: as above.
+[[nodiscard]] hal::Result<PixelFactor> pixel_factor(const Response& seeing, MetricKind metric, double rho,
+                                                    double rounding, const Progress& progress);
 
 }  // namespace compueye::recon

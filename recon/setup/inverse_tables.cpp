@@ -1,6 +1,7 @@
 #include "recon/setup/inverse_tables.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "recon/setup/factor_check.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/row_norms.hpp"
+#include "recon/setup/shorter_side.hpp"
 
 namespace compueye::recon {
 
@@ -39,8 +41,24 @@ core::ClassInverse<T> make_inverse(const ParityClasses& classes, const std::vect
   return inverse;
 }
 
+namespace {
+
+template <class T>
+hal::Result<void> fill_pixel_inverse(SetUp<T>& from, core::FactoredProblem<T>& problem) {
+  constexpr double rounding = 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon());
+  PixelFactor made =
+      TRY(pixel_factor(from.seeing, metric_of(from.objective.basis), from.plan.rho, rounding, from.progress));
+  problem.rho = static_cast<T>(from.plan.rho);
+  problem.pixel_inverse = {problem.pixels(), from.kept.keep(std::move(made.inverse))};
+  if (from.plan.max_reweighted > 0) problem.pixel_matrix = {problem.pixels(), from.kept.keep(std::move(made.matrix))};
+  return {};
+}
+
+}  // namespace
+
 template <class T>
 hal::Result<void> fill_inverse(SetUp<T>& from, const ParityClasses& classes, core::FactoredProblem<T>& problem) {
+  if (is_tall(from.seeing)) return fill_pixel_inverse(from, problem);
   if (from.stored && from.stored->values.size() != factor_size(classes)) {
     return stale(*from.stored, from.plan, from.seeing.rows());
   }

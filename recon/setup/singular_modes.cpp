@@ -9,6 +9,7 @@
 #include "recon/problem/number_text.hpp"
 #include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
+#include "recon/setup/shorter_side.hpp"
 #include "recon/setup/symmetric_modes.hpp"
 #include "recon/setup/tall_response.hpp"
 

@@ -52,14 +52,6 @@ Eigen::MatrixXd reduced(Eigen::MatrixXd rows) {
 
 }  // namespace
 
-bool is_tall(const Response& seeing) noexcept {
-  return is_tall(static_cast<std::size_t>(seeing.rows()), static_cast<std::size_t>(seeing.cols()));
-}
-
-int mode_count(int seeing_rows, int cols) noexcept {
-  return is_tall(static_cast<std::size_t>(seeing_rows), static_cast<std::size_t>(cols)) ? cols : seeing_rows;
-}
-
 hal::Result<Eigen::MatrixXd> triangle(const Response& seeing, const Progress& progress) {
   const RowBlocks blocks(seeing);
   std::vector<Eigen::MatrixXd> triangles(static_cast<std::size_t>(blocks.count()));

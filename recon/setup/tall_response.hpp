@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <vector>
 
 #include "hal/result.hpp"
@@ -9,15 +8,6 @@
 #include "recon/setup/factor.hpp"
 
 namespace compueye::recon {
-
-/// So many more rows than pixels that what is cubic, or square in memory, is made on the side of the pixels.
-[[nodiscard]] constexpr bool is_tall(std::size_t rows, std::size_t cols) noexcept {
-  return rows >= 2 * cols;
-}
-[[nodiscard]] bool is_tall(const Response& seeing) noexcept;
-
-/// How many modes A A' has: of a tall response one a pixel, else one a row.
-[[nodiscard]] int mode_count(int seeing_rows, int cols) noexcept;
 
 /// R of A = Q R, cols x cols, by Householder reflections of blocks of rows: it has A's singular values and right
 /// singular vectors to double's rounding, where A'A would have their squares. 2 rows cols^2 multiply-adds, memory of a

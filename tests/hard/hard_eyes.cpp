@@ -110,6 +110,23 @@ Response one_pixel() {
 Response one_of_each() {
   return dense(1, 1, 1, {0.75});
 }
+Response tall_rows() {
+  Random random(11);
+  return dense(600, 4, 6, random_vector(random, 600 * 24, 0.0, 1.0));
+}
+Response tall_eye() {
+  Random random(12);
+  const Response eye = seen_by(geometry(10.0), 4, 6);
+  std::vector<double> values;
+  for (int m = 0; m < 600; ++m) {
+    std::vector<double> row(24, 0.0);
+    eye.for_each_in_row(m % eye.rows(), [&](std::int32_t n, double v) {
+      row[static_cast<std::size_t>(n)] = v * random.uniform(0.98, 1.02);
+    });
+    values.insert(values.end(), row.begin(), row.end());
+  }
+  return dense(600, 4, 6, std::move(values));
+}
 Response zero_response() {
   return dense(4, 2, 3, std::vector<double>(24, 0.0));
 }

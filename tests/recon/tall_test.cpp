@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "recon/setup/leading_modes.hpp"
+#include "recon/setup/shorter_side.hpp"
 #include "recon/setup/singular_modes.hpp"
 #include "recon/setup/tall_response.hpp"
 #include "tests/hal/error_check.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -21,6 +22,7 @@
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/operator_list.hpp"
 #include "recon/setup/penalty_rule.hpp"
+#include "recon/setup/shorter_side.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -165,25 +167,31 @@ void add_symmetry(const Response& a, Figures& figures) {
                            : "none");
 }
 
-/// Exact, from a reconstructor that is handed an empty factor instead of computing one.
+/// Exact, from a reconstructor that is handed an empty factor instead of computing one, but for that of a tall
+/// response.
 Result<void> add_memory(const Response& a, Figures& figures) {
   const std::size_t seeing = a.seeing_rows().size();
   if (seeing == 0) return {};
   const recon::ParityClasses classes(static_cast<int>(seeing),
                                      recon::find_mirror_symmetry(a.select_rows(a.seeing_rows())));
-  const std::size_t packed = recon::factor_size(classes);
-  if (packed * sizeof(float) > most_factor_bytes) return {};
+  const auto pixels = static_cast<std::size_t>(a.cols()), triangle = pixels * (pixels + 1) / 2;
+  const bool tall = recon::is_tall(static_cast<int>(seeing), a.cols());
+  const std::size_t bytes = tall ? 2 * triangle * sizeof(double) : recon::factor_size(classes) * sizeof(float);
+  if (bytes > most_factor_bytes) return {};
   const recon::Objective objective;
   recon::Plan plan;
-  recon::Factor factor{recon::resolve_rho(a, objective, plan), static_cast<int>(seeing), std::vector<float>(packed)};
+  std::optional<recon::Factor> factor;
+  if (!tall) {
+    factor = {recon::resolve_rho(a, objective, plan), static_cast<int>(seeing),
+              std::vector<float>(recon::factor_size(classes))};
+  }
   const auto made = TRY(recon::Reconstructor::create(a, objective, plan, std::move(factor)));
   figures.add("rho_by_rule", made.plan().rho, "rho by rule", "{:4}");
-  figures.add(
-      "admm_memory",
-      Figures{{"tables", made.table_bytes()}, {"factor", packed * sizeof(float)}, {"workspace", made.required_bytes()}},
-      "memory of admm (f32)",
-      "{admm_memory.tables:bytes} tables (factor {admm_memory.factor:bytes}), {admm_memory.workspace:bytes} "
-      "workspace");
+  figures.add("admm_memory",
+              Figures{{"tables", made.table_bytes()}, {"factor", bytes}, {"workspace", made.required_bytes()}},
+              "memory of admm (f32)",
+              "{admm_memory.tables:bytes} tables (factor {admm_memory.factor:bytes}), {admm_memory.workspace:bytes} "
+              "workspace");
   return {};
 }
 

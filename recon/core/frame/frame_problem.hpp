@@ -48,11 +48,16 @@ struct FrameProblem {
 template <class T>
 struct FactoredProblem : FrameProblem<T> {
   ClassInverse<T> inverse;  ///< (A K0^-1 A' + rho I)^-1, order = a.rows
+  /// Of a tall A in place of it (core/frame/pixel_step.hpp): A'A + rho K0 and its inverse, order = a.cols; else 0. The
+  /// former is there only where a weight may differ from one.
+  PackedSymmetric<double> pixel_inverse, pixel_matrix;
   T rho = T(1);
 
   template <class Archive>
   void fields(Archive& archive) {
     describe(inverse, archive);
+    describe(pixel_inverse, archive);
+    describe(pixel_matrix, archive);
     archive.number(rho);
   }
 };

@@ -16,7 +16,7 @@ namespace compueye::recon::core {
 // on the way: tests/recon/frozen_frame_test.cpp solves every setting once more from its bytes.
 
 inline constexpr std::uint64_t frozen_magic = 0x4559454E5A4F5246;  // "FROZNEYE"
-inline constexpr std::uint64_t frozen_version = 4;  // goes up whenever this file, or a method's fields(), changes
+inline constexpr std::uint64_t frozen_version = 5;  // goes up whenever this file, or a method's fields(), changes
 inline constexpr std::size_t frozen_alignment = 64;
 inline constexpr std::size_t frozen_name_words = 2;  // of eight characters, for the name of the method
 
@@ -118,6 +118,12 @@ void describe(ClassInverse<float>& inverse, Archive& archive) {
     archive.table(part.index, inverse.order);
     archive.table(part.share, inverse.order);
   }
+}
+
+template <class Archive>
+void describe(PackedSymmetric<double>& matrix, Archive& archive) {
+  archive.number(matrix.order);
+  archive.table(matrix.values, PackedSymmetric<double>::size(matrix.order));
 }
 
 template <class Archive>

@@ -13,15 +13,17 @@ constexpr double least_weight = 1e-12;
 template <class T>
 WeightedStep<T>::WeightedStep(const FactoredProblem<T>& problem, Workspace& workspace) noexcept
     : problem_(&problem),
+      tall_(problem.pixel_inverse.order > 0),
       samples_(problem, workspace),
       residual_(workspace.take<T>(problem.a.rows)),
       step_(workspace.take<T>(problem.a.rows)),
       correction_(workspace.take<T>(problem.a.rows)),
       pull_(workspace.take<T>(problem.pixels())),
-      reweighted_(problem.max_reweighted, workspace),
-      inverse_rows_(workspace.take<T>(problem.max_reweighted * problem.a.rows)),
+      on_pixels_(problem, workspace),
+      reweighted_(tall_ ? 0 : problem.max_reweighted, workspace),
+      inverse_rows_(workspace.take<T>(tall_ ? 0 : problem.max_reweighted * problem.a.rows)),
       inverse_scratch_(workspace.take<T>(problem.inverse.scratch_size())) {
-  if (problem.metric.is_identity()) return;
+  if (tall_ || problem.metric.is_identity()) return;
   coefficients_ = workspace.take<T>(problem.pixels());
   scratch_ =
       workspace.take<T>(dct_scratch_size(problem.image_rows, problem.image_cols) * problem.metric.dct.crew.workers);
@@ -31,7 +33,9 @@ template <class T>
 bool WeightedStep<T>::begin(const float* y, const float* weights) noexcept {
   for (std::size_t i = 0; i < problem_->a.rows; ++i) correction_[i] = T(0);
   for (std::size_t k = 0; k < problem_->pixels(); ++k) pull_[k] = T(0);
-  return samples_.gather(y, weights) && reweighted_.list(samples_) && factor_substitution();
+  if (!samples_.gather(y, weights)) return false;
+  if (tall_) return on_pixels_.begin(samples_, residual_);
+  return reweighted_.list(samples_) && factor_substitution();
 }
 
 template <class T>
@@ -69,6 +73,7 @@ void WeightedStep<T>::substitute() noexcept {
 
 template <class T>
 void WeightedStep<T>::apply(T* v, const T* shift) noexcept {
+  if (tall_) return on_pixels_.apply(samples_, v, pull_, residual_, shift, correction_);
   const std::size_t pixels = problem_->pixels();
   const auto add = [&](const T* what, T* to, bool flush) {
     problem_->crew.share(pixels, pixels, [&](std::size_t, std::size_t begin, std::size_t end) {

@@ -4,6 +4,7 @@
 
 #include "recon/core/frame/frame_problem.hpp"
 #include "recon/core/frame/frame_samples.hpp"
+#include "recon/core/frame/pixel_step.hpp"
 #include "recon/core/frame/reweighted_channels.hpp"
 #include "recon/core/parts/workspace.hpp"
 
@@ -30,7 +31,7 @@ namespace compueye::recon::core {
 ///
 /// which costs the same products, is the same where H is exact, and where it is not ends at the same c as long as
 /// e s / rho < 1: iterative refinement (Higham 2002, "Accuracy and stability of numerical algorithms", chapter 12) with
-/// the iterations of the method as its own.
+/// the iterations of the method as its own. A tall A is left to core/frame/pixel_step.hpp, and has no H.
 template <class T>
 class WeightedStep {
  public:
@@ -44,7 +45,8 @@ class WeightedStep {
   /// is nought at missing channels, y - shift takes the place of y.
   void apply(T* v, const T* shift = nullptr) noexcept;
 
-  /// (A K0^-1 A' + rho W^-1)^-1 (y - A v) of the last apply(), which is W (y - A x) / rho: one value a seeing row.
+  /// (A K0^-1 A' + rho W^-1)^-1 (y - A v) of the last apply() with a shift, which is W (y - A x) / rho: one value a
+  /// seeing row.
   [[nodiscard]] const T* correction() const noexcept { return correction_; }
 
   [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return samples_; }
@@ -60,11 +62,13 @@ class WeightedStep {
   void improve_correction(const T* shift) noexcept;
 
   const FactoredProblem<T>* problem_;
+  bool tall_;
   FrameSamples<T> samples_;
   T* residual_;
   T* step_;
   T* correction_;
   T* pull_;  // K0^-1 A' correction
+  PixelStep<T> on_pixels_;
   ReweightedChannels<T> reweighted_;
   T* inverse_rows_;  // H_S, |S| x rows
   T* inverse_scratch_;

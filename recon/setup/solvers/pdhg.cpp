@@ -6,8 +6,8 @@
 #include "recon/setup/factor_check.hpp"
 #include "recon/setup/leading_modes.hpp"
 #include "recon/setup/penalty_rule.hpp"
+#include "recon/setup/shorter_side.hpp"
 #include "recon/setup/solver_row_of.hpp"
-#include "recon/setup/tall_response.hpp"
 
 namespace compueye::recon {
 namespace {
