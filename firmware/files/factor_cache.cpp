@@ -143,8 +143,7 @@ std::string factor_path(const std::string& folder, const FactorKey& key) {
 Result<recon::Factor> load_factor(const std::string& folder, const FactorKey& key) {
   const std::string path = factor_path(folder, key);
   TRY(check_key(path, key));
-  const FileDescriptor file = TRY(open_for_reading(path));
-  TRY(check_own(file, path));
+  const FileDescriptor file = TRY(open_own(path));
   Header header{};
   const std::size_t got = TRY(read_some(file, path, std::as_writable_bytes(std::span(&header, 1))));
   recon::Factor factor{key.rho, key.order, {}, key.metric, key.rank, true};

@@ -97,22 +97,31 @@ hal::Result<FileDescriptor> open_for_reading(const std::string& path) {
   return file;
 }
 
-hal::Result<void> check_own(const FileDescriptor& file, const std::string& path) {
+hal::Result<FileDescriptor> open_own(const std::string& path) {
+  // Neither through a link nor into a wait for whoever writes a pipe.
+  FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  const int why = file.is_open() ? 0 : errno;
+  const auto unbelieved = [&](const std::string& what) {
+    return hal::fail(hal::ErrorCode::stale, path, what + ", so what it holds is not believed");
+  };
+  if (why == ELOOP) return unbelieved("is a symbolic link");
   struct stat status {};
-  if (::fstat(file.get(), &status) != 0) return tl::unexpected(file_error(errno, path, "cannot be read"));
+  if (why == ENXIO || (why == 0 && ::fstat(file.get(), &status) == 0 && !S_ISREG(status.st_mode))) {
+    return unbelieved("is no regular file");
+  }
+  if (why != 0) return tl::unexpected(file_error(why, path, "cannot be opened"));
   if (status.st_uid != ::geteuid() && status.st_uid != 0) {
-    return hal::fail(hal::ErrorCode::stale, path,
-                     "belongs to user " + std::to_string(status.st_uid) + ", so what it holds is not believed");
+    return unbelieved("belongs to user " + std::to_string(status.st_uid));
   }
   // A group of one's own, as most systems give everybody, is no other.
   if ((status.st_mode & S_IWOTH) != 0 || ((status.st_mode & S_IWGRP) != 0 && status.st_gid != ::getegid())) {
-    return hal::fail(hal::ErrorCode::stale, path, "can be written by others, so what it holds is not believed");
+    return unbelieved("can be written by others");
   }
-  return {};
+  return file;
 }
 
 void remove_unless_own(const std::string& path) {
-  if (const auto older = open_for_reading(path); older && !check_own(*older, path)) ::unlink(path.c_str());
+  if (!open_own(path)) ::unlink(path.c_str());
 }
 
 std::optional<std::uint64_t> regular_size(const FileDescriptor& file) noexcept {

@@ -48,10 +48,11 @@ class FileDescriptor {
 /// Opens for reading. Errors: not_found, io (a folder, no permission).
 [[nodiscard]] hal::Result<FileDescriptor> open_for_reading(const std::string& path);
 
-/// Whether nobody but this user and root can have written it, for what is believed without being made again. Error
-/// stale, which says who else.
-[[nodiscard]] hal::Result<void> check_own(const FileDescriptor& file, const std::string& path);
-/// Takes away what check_own() does not believe, whose owner and permissions a file in its place would inherit.
+/// Opens for reading what is believed without being made again: a regular file under its own name, not behind a link,
+/// that nobody but this user and root can have written. Errors: stale, which says why not; not_found, io.
+[[nodiscard]] hal::Result<FileDescriptor> open_own(const std::string& path);
+/// Takes away what open_own() refuses: a file in its place would inherit its owner and permissions, or be written
+/// through a link to somewhere else. A folder stays.
 void remove_unless_own(const std::string& path);
 
 /// Size in bytes of a regular file; nothing for a pipe or a device, whose end is only known once it is reached.

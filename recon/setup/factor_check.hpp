@@ -18,7 +18,9 @@ namespace compueye::recon {
 [[nodiscard]] bool inverts(const core::ClassInverse<float>& inverse, const Response& seeing,
                            const core::Metric<float>& metric, double rho);
 
-/// A A' U s^-1 c = U c, ||U c|| = ||c|| and s falls, class by class. `modes` as leading_modes() packs them.
+/// A A' U s^-1 c = U c, U'U = I to four digits (frames diverge of less) s falls, and what follows the
+/// modes bounds the rest of A A', class by class. `modes` as
+/// leading_modes() packs them.
 [[nodiscard]] bool are_modes(std::span<const float> modes, int rank, const Response& seeing,
                              const ParityClasses& classes);
 

@@ -145,3 +145,28 @@ TEST_CASE("a factor that somebody else can have written is not believed, and rep
     CHECK(load_factor(cache, key).has_value());
   }
 }
+
+TEST_CASE("what stands in a factor's place is neither waited for nor written through") {
+  const TemporaryFolder folder;
+  const auto cache = folder / "cache", elsewhere = folder / "elsewhere";
+  const recon::Factor factor = some_factor(50, 0.125);
+  REQUIRE(store_factor(cache, key, factor).has_value());
+  const std::string path = factor_path(cache, key);
+  std::filesystem::copy_file(path, elsewhere);
+  const auto put = [&](int way) {
+    std::filesystem::remove(path);
+    if (way == 0) return ::mkfifo(path.c_str(), 0600);
+    return ::symlink(way == 1 ? elsewhere.c_str() : (folder / "nowhere").c_str(), path.c_str());
+  };
+  for (const int way : {0, 1, 2}) {
+    CAPTURE(way);
+    REQUIRE(put(way) == 0);
+    test::check_error(load_factor(cache, key), ErrorCode::stale, path, {});
+    std::filesystem::resize_file(elsewhere, 3);
+    REQUIRE(store_factor(cache, key, factor).has_value());
+    CHECK(std::filesystem::is_regular_file(std::filesystem::symlink_status(path)));
+    CHECK(load_factor(cache, key).has_value());
+    CHECK(std::filesystem::file_size(elsewhere) == 3);
+    CHECK_FALSE(std::filesystem::exists(folder / "nowhere"));
+  }
+}
