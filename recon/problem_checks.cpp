@@ -97,20 +97,22 @@ hal::Result<void> check_choice(const Objective& objective, const Plan& plan) {
 
 hal::Result<void> check_scale(double squares, int cols) {
   const double column = std::sqrt(squares / cols);
-  if (column >= 1e-12 && column <= 1e12) return {};
+  if (column >= 1e-35 && column <= 1e35) return {};
   return fail(ErrorCode::out_of_range, "response",
               "has columns of norm " + number_text(column) +
-                  " (root mean square), expected 1e-12 to 1e12: give A and y in another unit");
+                  " (root mean square), expected 1e-35 to 1e35: give A and y in another unit");
 }
 
-hal::Result<void> check_in_precision(double squares, const Objective& objective, const Plan& plan) {
+hal::Result<void> check_in_precision(double squares, const Objective& objective, const Plan& plan,
+                                     const UnitChoice& unit) {
   const bool single = plan.precision == Precision::f32;
   const double most = single ? 1e35 : 1e300;
-  if (objective.lambda > most) return out_of_range("lambda", objective.lambda, "a smaller number");
-  if (objective.constraint == ConstraintKind::box && std::max(std::abs(objective.lo), std::abs(objective.hi)) > 1e15) {
+  if (std::ldexp(unit.squared(objective.lambda), unit.picture) > most)
+    return out_of_range("lambda", objective.lambda, "a smaller number");
+  if (objective.constraint == ConstraintKind::box && std::max(std::abs(objective.lo), std::abs(objective.hi)) > 1e37) {
     return fail(ErrorCode::out_of_range, "box",
                 "is [" + number_text(objective.lo) + ", " + number_text(objective.hi) +
-                    "], expected bounds of at most 1e15 in magnitude");
+                    "], expected bounds of at most 1e37 in magnitude");
   }
   const double rounding = single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
   const double least_rho = squares * rounding * rounding, most_rho = squares / rounding;

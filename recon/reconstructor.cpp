@@ -16,6 +16,7 @@
 #include "recon/setup/quantised_response.hpp"
 #include "recon/setup/shorter_side.hpp"
 #include "recon/setup/solver_row.hpp"
+#include "recon/setup/unit_choice.hpp"
 #include "recon/worker_threads.hpp"
 
 namespace compueye::recon {
@@ -36,6 +37,7 @@ struct Reconstructor::Tables {
   Plan plan;
   bool rho_by_rule = false;
   std::vector<std::int32_t> seeing;
+  UnitChoice unit;
   Factor factor;  // of f32 the inverse in use; modes are only kept to be stored
   KeptTables kept;
   std::unique_ptr<WorkerThreads> workers;  // none where one thread does it all
@@ -43,14 +45,24 @@ struct Reconstructor::Tables {
 
   template <class T>
   hal::Result<void> prepare(const Response& response, std::optional<Factor> stored, const Progress& progress) {
-    const Response sees = response.select_rows(seeing);
-    SetUp<T> from{sees,          objective,
-                  plan,          rho_by_rule,
-                  seeing.data(), channels,
-                  factor,        std::move(stored),
-                  progress,      workers == nullptr ? core::Crew{} : workers->crew(),
+    const std::vector<double> scale(unit.response == 0 ? 0 : seeing.size(), std::ldexp(1.0, unit.response));
+    const Response sees = response.select_rows(seeing, scale);
+    const Objective in_unit = unit.of_response(objective);
+    SetUp<T> from{sees,
+                  in_unit,
+                  unit,
+                  plan,
+                  rho_by_rule,
+                  seeing.data(),
+                  channels,
+                  factor,
+                  std::move(stored),
+                  progress,
+                  workers == nullptr ? core::Crew{} : workers->crew(),
                   kept};
+    plan.rho = unit.squared(plan.rho);
     problem = TRY(plan.solver->in<T>().prepare(from));
+    plan.rho = unit.unsquared(plan.rho);
     return {};
   }
 
@@ -102,11 +114,12 @@ hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& resp
   }
   const double squares = response.squared_norm();
   TRY(check_scale(squares, response.cols()));
+  tables->unit = choose_unit(squares, response.cols(), objective, plan);
   tables->plan.rho = resolve_rho(response, objective, plan);
   tables->rho_by_rule = plan.rho == 0.0;
   tables->factor = wanted_factor(response, objective, tables->plan);
   if (tables->factor.rank > 0) tables->plan.rank = tables->factor.rank;
-  TRY(check_in_precision(squares, objective, tables->plan));
+  TRY(check_in_precision(squares, objective, tables->plan, tables->unit));
   const int most = static_cast<int>(tables->seeing.size());
   const int by_rule = (most + 9) / 10;
   tables->plan.max_reweighted = std::min(most, plan.max_reweighted < 0 ? by_rule : plan.max_reweighted);
@@ -124,7 +137,8 @@ Factor Reconstructor::wanted_factor(const Response& response, const Objective& o
     return {0.0, order, {}, metric, plan.solver->rank_by_rule(plan, mode_count(order, response.cols()))};
   }
   const bool kept = uses_factor(plan.solver) && !is_tall(order, response.cols());
-  return {resolve_rho(response, objective, plan), kept ? order : 0, {}, metric, 0};
+  const UnitChoice unit{response_exponent(response.squared_norm(), response.cols()), 0};
+  return {unit.squared(resolve_rho(response, objective, plan)), kept ? order : 0, {}, metric, 0};
 }
 
 int Reconstructor::channels() const noexcept {

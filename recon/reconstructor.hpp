@@ -22,8 +22,8 @@ class Reconstructor {
  public:
   /// The response must know its picture (Response::with_image()). `factor` may hand in a stored one: it is
   /// refused (error stale) when its rho or order does not fit. Errors: usage, mismatch, interrupted, and out_of_range:
-  /// a setting beyond its range; a response that sees nothing or whose columns have a norm outside 1e-12..1e12 (root
-  /// mean square), because float32 could not hold its factor; a rho too small or too large for the precision.
+  /// a setting beyond its range; a response that sees nothing or whose columns have a norm outside 1e-35..1e35 (root
+  /// mean square), whose samples float32 could not hold; a rho too small or too large for the precision.
   /// unsupported: an operator that the response does not fit.
   [[nodiscard]] static hal::Result<Reconstructor> create(const Response& response, const Objective& objective,
                                                          const Plan& plan, std::optional<Factor> factor = std::nullopt,

@@ -1,5 +1,6 @@
 #include "recon/setup/solver_row.hpp"
 
+#include <cmath>
 #include <string>
 
 #include "recon/problem/number_text.hpp"
@@ -9,15 +10,23 @@
 namespace compueye::recon {
 namespace {
 
+/// Whether x grows with y: an l1 term, a bound or a box is a size to compare with, and so is the last frame.
+bool is_homogeneous(const Objective& objective, const Plan& plan) {
+  if (plan.solver->lambda == LambdaUse::variances) return true;
+  return objective.lambda == 0.0 && !objective.epsilon && objective.constraint != ConstraintKind::box &&
+         plan.l1_reweighting == 0.0 && !plan.warm_start;
+}
+
 template <class T>
-void fill_objective(const Objective& objective, core::FrameProblem<T>& problem) {
+void fill_objective(const Objective& objective, int picture, core::FrameProblem<T>& problem) {
+  const auto in_unit = [picture](double value) { return static_cast<T>(std::ldexp(value, picture)); };
   const bool box = objective.constraint == ConstraintKind::box;
   problem.constrained = objective.constraint != ConstraintKind::none;
-  if (problem.constrained) problem.lo = box ? static_cast<T>(objective.lo) : T(0);
-  if (box) problem.hi = static_cast<T>(objective.hi);
-  problem.lambda = static_cast<T>(objective.lambda);
+  if (problem.constrained) problem.lo = box ? in_unit(objective.lo) : T(0);
+  if (box) problem.hi = in_unit(objective.hi);
+  problem.lambda = in_unit(objective.lambda);
   problem.bounded = objective.epsilon.has_value();
-  problem.epsilon = static_cast<T>(objective.epsilon.value_or(0.0));
+  problem.epsilon = in_unit(objective.epsilon.value_or(0.0));
 }
 
 }  // namespace
@@ -34,7 +43,9 @@ hal::Result<void> fill_shared(const SetUp<T>& from, core::FrameProblem<T>& probl
   problem.max_reweighted = static_cast<std::size_t>(plan.max_reweighted);
   problem.image_rows = static_cast<std::size_t>(rows);
   problem.image_cols = static_cast<std::size_t>(cols);
-  fill_objective(from.objective, problem);
+  fill_objective(from.objective, from.unit.picture, problem);
+  problem.unit = from.unit.of_frames();
+  problem.homogeneous = is_homogeneous(from.objective, plan);
   problem.measure_gap = plan.measure_gap;
   problem.point = {problem.a.kind, from.objective.basis, plan.solver, plan.precision,
                    plan.solver->direct ? 1 : plan.iterations};

@@ -14,15 +14,17 @@
 #include "recon/setup/factor.hpp"
 #include "recon/setup/kept_tables.hpp"
 #include "recon/setup/penalty_rule.hpp"
+#include "recon/setup/unit_choice.hpp"
 
 namespace compueye::recon {
 
 /// What a method's problem is made from, and where its tables are kept.
 template <class T>
 struct SetUp {
-  const Response& seeing;  ///< rows that see, as the operator holds them
-  const Objective& objective;
-  Plan& plan;  ///< every rule resolved; what only the set-up can tell (tsvd's rank) is filled in
+  const Response& seeing;      ///< rows that see, as the operator holds them
+  const Objective& objective;  ///< A's unit is that of `seeing`, x as it is asked for
+  UnitChoice unit;             ///< that the frames are solved in
+  Plan& plan;                  ///< every rule resolved; what only the set-up can tell (tsvd's rank) is filled in
   bool rho_by_rule;
   const std::int32_t* seeing_channels;  ///< seeing.rows() of them
   int channels;                         ///< M

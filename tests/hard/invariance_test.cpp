@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -63,12 +62,8 @@ bool same_bits(const HardRun& a, const HardRun& b) {
 TEST_CASE("A and y times powers of two give the picture times a power of two, bit for bit") {
   struct Scaling {
     int a, y;
-    const char* waits_for;
   };
-  constexpr const char* unit = "a change of unit changes nothing but the unit";
-  const Scaling scalings[]{{3, -2, ""},     {-7, 5, ""},     {20, -25, unit},    {-30, 20, unit},
-                           {40, -40, unit}, {-60, 30, unit}, {-100, -100, unit}, {100, 100, unit}};
-  int waiting = 0, compared = 0;
+  constexpr Scaling scalings[]{{3, -2}, {-7, 5}, {20, -25}, {-30, 20}, {40, -40}, {-60, 30}, {-100, -100}, {100, 100}};
   for (const auto& eye : {ordinary_eye, measured_rows}) {
     const HardRow row = row_of(eye);
     const HardProblem problem = firmware::pose(row.hard, eye(), 1);
@@ -83,20 +78,67 @@ TEST_CASE("A and y times powers of two give the picture times a power of two, bi
         objective.hi = std::ldexp(objective.hi, by.y - by.a);
         HardRun run_scaled = run(objective, plan_of(row, setting, scaled), scaled);
         for (float& value : run_scaled.x) value = std::ldexp(value, by.a - by.y);
-        ++compared;
-        if (!run_scaled.refused && run_scaled.x == plain.x) continue;
-        if (*by.waits_for != 0) {
-          ++waiting;
-          continue;
-        }
+        const auto figures_follow = [&] {
+          const double square = std::ldexp(1.0, 2 * by.y);
+          return run_scaled.info.health == plain.info.health &&
+                 run_scaled.info.objective == square * plain.info.objective &&
+                 run_scaled.info.residual == std::ldexp(plain.info.residual, by.y) &&
+                 run_scaled.info.duality_gap == (plain.info.duality_gap > 0.0 ? square : 1.0) * plain.info.duality_gap;
+        };
+        if (!run_scaled.refused && run_scaled.x == plain.x && figures_follow()) continue;
         FAIL_CHECK(setting.name() << ", A times 2^" << by.a << ", y times 2^" << by.y << ": "
                                   << (run_scaled.refused ? run_scaled.refused->text()
                                                          : std::to_string(relative_difference(run_scaled.x, plain.x))));
       }
     }
   }
-  std::printf("%d compared\n", compared);
-  if (waiting > 0) std::printf("waits for %s: %d\n", unit, waiting);
+}
+
+TEST_CASE("y and lambda times any c give c times the picture, to rounding") {
+  const HardRow row = row_of(measured_rows);
+  const HardProblem problem = firmware::pose(row.hard, row.eye(), 6);
+  for (const HardSetting& setting : settings_of(row)) {
+    CAPTURE(setting.name());
+    const HardRun plain = run(row, setting, problem);
+    REQUIRE_FALSE(plain.refused);
+    for (const double c : {1e-30, 1e-9, 4095.0, 1e30}) {
+      CAPTURE(c);
+      HardProblem scaled = problem;
+      for (float& value : scaled.y) value = static_cast<float>(c * static_cast<double>(value));
+      recon::Objective objective = objective_of(row, setting, problem);
+      if (setting.solver->lambda != recon::LambdaUse::variances) objective.lambda *= c;
+      objective.hi *= c;
+      HardRun other = run(objective, plan_of(row, setting, problem), scaled);
+      REQUIRE_FALSE(other.refused);
+      for (float& value : other.x) value = static_cast<float>(static_cast<double>(value) / c);
+      CHECK(other.info.health == plain.info.health);
+      CHECK(other.info.objective / (c * c) == doctest::Approx(plain.info.objective).epsilon(1e-3));
+      CHECK(relative_difference(other.x, plain.x) < (setting.precision == recon::Precision::f32 ? 1e-2 : 1e-4));
+    }
+  }
+}
+
+TEST_CASE("an epsilon has the unit of y, and what it costs that of x") {
+  const HardProblem problem = firmware::pose(row_of(measured_rows).hard, measured_rows(), 7);
+  const double size = std::sqrt(std::inner_product(problem.y.begin(), problem.y.end(), problem.y.begin(), 0.0));
+  recon::Plan plan;
+  for (const char* solver : {"adm", "omp"}) {
+    CAPTURE(solver);
+    plan.solver = recon::solver_named(solver);
+    recon::Objective objective;
+    objective.epsilon = 0.05 * size;
+    const HardRun plain = run(objective, plan, problem);
+    REQUIRE_FALSE(plain.refused);
+    HardProblem scaled = problem;
+    for (float& value : scaled.y) value = std::ldexp(value, -80);
+    objective.epsilon = std::ldexp(*objective.epsilon, -80);
+    HardRun other = run(objective, plan, scaled);
+    REQUIRE_FALSE(other.refused);
+    for (float& value : other.x) value = std::ldexp(value, 80);
+    CHECK(other.x == plain.x);
+    CHECK(other.info.residual == std::ldexp(plain.info.residual, -80));
+    CHECK(other.info.objective == std::ldexp(plain.info.objective, plan.solver->minimises ? -80 : -160));
+  }
 }
 
 TEST_CASE("the order of the rows changes nothing beyond rounding") {

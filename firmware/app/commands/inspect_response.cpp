@@ -182,8 +182,8 @@ Result<void> add_memory(const Response& a, Figures& figures) {
   recon::Plan plan;
   std::optional<recon::Factor> factor;
   if (!tall) {
-    factor = {recon::resolve_rho(a, objective, plan), static_cast<int>(seeing),
-              std::vector<float>(recon::factor_size(classes))};
+    factor = recon::Reconstructor::wanted_factor(a, objective, plan);
+    factor->values.resize(recon::factor_size(classes));
   }
   const auto made = TRY(recon::Reconstructor::create(a, objective, plan, std::move(factor)));
   figures.add("rho_by_rule", made.plan().rho, "rho by rule", "{:4}");

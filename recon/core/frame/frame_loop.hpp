@@ -17,6 +17,7 @@ namespace compueye::recon::core {
 //                             come to an end by itself
 //   bool finish(info)         leaves the answer in picture() and fills in what is known of it; false: it is not finite
 //   const T* picture()        problem.pixels() values
+//   samples()                 FrameSamples<T>, as begin() took them
 //   SpareVectors<T> spare()   of a method that minimises the objective: what it works in, free once x is handed out
 //   void delivered(info)      if there is one: comes last, when info is complete; not after a begin() that was false
 
@@ -38,13 +39,18 @@ FrameInfo run_frame(Method& method, const FrameProblem<T>& problem, const float*
   FrameInfo info;
   info.point = problem.point;
   if (!method.begin(y, weights)) {
-    deliver(method.picture(), false, problem.pixels(), info, x);
+    deliver(method.picture(), 1.0, false, problem.pixels(), info, x);
     return info;
   }
+  const FrameUnit& unit = method.samples().unit();
   iterate_all(method, problem.point.iterations);
   const bool finite = method.finish(info);
-  deliver(method.picture(), finite, problem.pixels(), info, x);
-  if constexpr (requires { method.spare(); }) prefer_black(problem, method.spare(), info, x);
+  deliver(method.picture(), unit.picture, finite, problem.pixels(), info, x);
+  constexpr bool minimises = requires {
+    method.spare();
+  };
+  if constexpr (minimises) prefer_black(problem, method.spare(), info, x);
+  unit.restore(info, minimises && problem.bounded);
   if constexpr (requires { method.delivered(info); }) method.delivered(info);
   return info;
 }

@@ -11,9 +11,13 @@ constexpr double converged_gap = 1e-3;
 }  // namespace
 
 template <class T>
-void deliver(const T* solution, bool usable, std::size_t n, FrameInfo& info, float* x) noexcept {
-  // A float32 x may overflow where a double solution did not; objectives overflow before either.
-  for (std::size_t k = 0; k < n; ++k) x[k] = usable ? static_cast<float>(solution[k]) : 0.0F;
+void deliver(const T* solution, double unit, bool usable, std::size_t n, FrameInfo& info, float* x) noexcept {
+  // A float32 x may overflow where a double solution did not; objectives overflow before either. At no_bound a proximal
+  // map has clipped what had no bound.
+  for (std::size_t k = 0; k < n; ++k) {
+    usable = usable && solution[k] < T(no_bound) && solution[k] > T(-no_bound);
+    x[k] = usable ? static_cast<float>(static_cast<double>(solution[k]) * unit) : 0.0F;
+  }
   if (usable && all_finite(x, n) && all_finite(&info.objective, 1)) return;
   for (std::size_t k = 0; k < n; ++k) x[k] = 0.0F;
   info.health = Health::invalid;
@@ -45,8 +49,8 @@ void judge_by_gap(const FrameProblem<T>& problem, const DualityGap<T>& measured,
   info.health = settled ? Health::converged : Health::budget_used;
 }
 
-template void deliver(const float*, bool, std::size_t, FrameInfo&, float*) noexcept;
-template void deliver(const double*, bool, std::size_t, FrameInfo&, float*) noexcept;
+template void deliver(const float*, double, bool, std::size_t, FrameInfo&, float*) noexcept;
+template void deliver(const double*, double, bool, std::size_t, FrameInfo&, float*) noexcept;
 template void evaluate(const FrameSamples<float>&, const float*, double, float*, FrameInfo&) noexcept;
 template void evaluate(const FrameSamples<double>&, const double*, double, double*, FrameInfo&) noexcept;
 template double l1_penalty(const FrameProblem<float>&, const float*) noexcept;

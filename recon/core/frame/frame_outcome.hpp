@@ -9,10 +9,10 @@
 
 namespace compueye::recon::core {
 
-/// Hands out x; or all zeros with Health::invalid and figures of 0 when `usable` is false, or the solution (as float32)
-/// or its objective is not finite. Comes last, after evaluate().
+/// Hands out the solution times `unit`; or all zeros with Health::invalid and figures of 0 when `usable` is false, the
+/// solution is at no_bound, or x or its objective is not finite. Comes last, after evaluate().
 template <class T>
-void deliver(const T* solution, bool usable, std::size_t n, FrameInfo& info, float* x) noexcept;
+void deliver(const T* solution, double unit, bool usable, std::size_t n, FrameInfo& info, float* x) noexcept;
 
 /// Fills in the residual, the channel counts and the objective with the given penalty term; `scratch` takes
 /// problem.a.rows values.

@@ -5,6 +5,7 @@
 
 #include "recon/core/bases/basis.hpp"
 #include "recon/core/frame/frame_info.hpp"
+#include "recon/core/frame/frame_unit.hpp"
 #include "recon/core/operators/linear_operator.hpp"
 #include "recon/core/parts/class_inverse.hpp"
 #include "recon/core/parts/crew.hpp"
@@ -37,6 +38,8 @@ struct FrameProblem {
   T lambda = T(0);
   bool bounded = false;  ///< min ||Psi x||_1 subject to ||W^(1/2)(A x - y)|| <= epsilon instead
   T epsilon = T(0);
+  FrameUnit unit;            ///< A, lambda, lo, hi and epsilon are in it
+  bool homogeneous = false;  ///< c y gives c x, c > 0, so that a frame may be solved in a unit of its own
   bool measure_gap = false;
   OperatingPoint point;  ///< point.iterations = K
   Crew crew = {};        ///< for the passes over pixels and coefficients; operator, bases and inverse have theirs

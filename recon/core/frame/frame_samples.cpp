@@ -13,6 +13,7 @@ FrameSamples<T>::FrameSamples(const FrameProblem<T>& problem, Workspace& workspa
 
 template <class T>
 bool FrameSamples<T>::gather(const float* y, const float* weights) noexcept {
+  choose_unit(y, weights);
   used_ = 0;
   reweighted_ = 0;
   for (std::size_t i = 0; i < problem_->a.rows; ++i) {
@@ -20,11 +21,25 @@ bool FrameSamples<T>::gather(const float* y, const float* weights) noexcept {
     const T weight = weights == nullptr ? T(1) : static_cast<T>(weights[channel]);
     if (!(weight >= T(0) && weight <= T(1))) return false;
     weights_[i] = weight;
-    values_[i] = weight > T(0) ? static_cast<T>(y[channel]) : T(0);
+    values_[i] = weight > T(0) ? static_cast<T>(static_cast<double>(y[channel]) * unit_.samples) : T(0);
     if (weight > T(0)) ++used_;
     if (weight != T(1)) ++reweighted_;
   }
   return all_finite(values_, problem_->a.rows);
+}
+
+template <class T>
+void FrameSamples<T>::choose_unit(const float* y, const float* weights) noexcept {
+  unit_ = problem_->unit;
+  if (!problem_->homogeneous) return;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < problem_->a.rows; ++i) {
+    const auto channel = static_cast<std::size_t>(problem_->seeing[i]);
+    if (weights != nullptr && !(weights[channel] > 0.0F)) continue;
+    const double value = static_cast<double>(y[channel]), size = value < 0.0 ? -value : value;
+    if (size > largest) largest = size;
+  }
+  unit_ = unit_.for_samples_times(power_to_one(largest * unit_.samples));
 }
 
 template <class T>

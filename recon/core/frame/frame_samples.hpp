@@ -30,13 +30,18 @@ class FrameSamples {
   /// ||W^(1/2)(A x - y)||^2; `scratch` takes problem.a.rows values.
   [[nodiscard]] double squared_residual(const T* x, T* scratch) const noexcept;
 
+  /// values() are y in this unit.
+  [[nodiscard]] const FrameUnit& unit() const noexcept { return unit_; }
   [[nodiscard]] const T* values() const noexcept { return values_; }
   [[nodiscard]] const T* weights() const noexcept { return weights_; }
   [[nodiscard]] std::size_t channels_used() const noexcept { return used_; }
   [[nodiscard]] std::size_t channels_reweighted() const noexcept { return reweighted_; }
 
  private:
+  void choose_unit(const float* y, const float* weights) noexcept;
+
   const FrameProblem<T>* problem_;
+  FrameUnit unit_;
   T* values_;
   T* weights_;
   T* operator_scratch_;

@@ -164,6 +164,9 @@ void describe(FrameProblem<float>& problem, Archive& archive) {
   archive.number(problem.lambda);
   archive.number(problem.bounded);
   archive.number(problem.epsilon);
+  archive.number(problem.unit.samples);
+  archive.number(problem.unit.picture);
+  archive.number(problem.homogeneous);
   archive.number(problem.measure_gap);
   archive.kind(problem.point.op);
   archive.kind(problem.point.basis);

@@ -23,15 +23,15 @@ struct PictureRange {
 };
 
 template <class T>
-PictureRange take_picture(const float* x, std::size_t n, T* picture) noexcept {
+PictureRange take_picture(const float* x, std::size_t n, double unit, T* picture) noexcept {
   PictureRange range;
   for (std::size_t k = 0; k < n; ++k) {
     const auto value = static_cast<double>(x[k]);
     range.lo = value < range.lo ? value : range.lo;
     range.hi = value > range.hi ? value : range.hi;
-    picture[k] = static_cast<T>(x[k]);
+    picture[k] = static_cast<T>(value / unit);
   }
-  return range;
+  return {range.lo / unit, range.hi / unit};
 }
 
 template <class T>
@@ -52,7 +52,8 @@ LeastResidual least_residual(const FrameProblem<T>& problem, const float* y, con
   Workspace room(workspace);
   Memory<T> memory(problem, room);
   if (!memory.samples.gather(y, weights)) return {};
-  const PictureRange range = take_picture(x, problem.pixels(), memory.picture);
+  const FrameUnit& unit = memory.samples.unit();
+  const PictureRange range = take_picture(x, problem.pixels(), unit.picture, memory.picture);
   memory.samples.residual(memory.picture, memory.residual);
   double of_residual = 0.0, of_samples = 0.0, product = 0.0;
   for (std::size_t i = 0; i < problem.a.rows; ++i) {
@@ -63,11 +64,12 @@ LeastResidual least_residual(const FrameProblem<T>& problem, const float* y, con
     product += weight * r * sample;
     memory.residual[i] *= memory.samples.weights()[i];
   }
-  const LeastResidual nothing{0.0, square_root(of_samples)};
+  const LeastResidual nothing{0.0, square_root(of_samples) / unit.samples};
   if (!(of_residual > 0.0)) return nothing;
   for (std::size_t k = 0; k < problem.pixels(); ++k) memory.picture[k] = T(0);
   memory.samples.adjoint_accumulate(memory.residual, memory.picture);
-  const double least = (product - most_of(memory.picture, problem.pixels(), range)) / square_root(of_residual);
+  const double least =
+      (product - most_of(memory.picture, problem.pixels(), range)) / (square_root(of_residual) * unit.samples);
   return least > 0.0 ? LeastResidual{least, nothing.samples} : nothing;
 }
 
@@ -78,10 +80,12 @@ void channel_residuals(const FrameProblem<T>& problem, const float* y, const flo
   Memory<T> memory(problem, room);
   for (std::size_t c = 0; c < problem.channels; ++c) residuals[c] = 0.0F;
   if (!memory.samples.gather(y, weights)) return;
-  static_cast<void>(take_picture(x, problem.pixels(), memory.picture));
+  const FrameUnit& unit = memory.samples.unit();
+  static_cast<void>(take_picture(x, problem.pixels(), unit.picture, memory.picture));
   memory.samples.residual(memory.picture, memory.residual);
   for (std::size_t i = 0; i < problem.a.rows; ++i) {
-    residuals[static_cast<std::size_t>(problem.seeing[i])] = static_cast<float>(memory.residual[i]);
+    residuals[static_cast<std::size_t>(problem.seeing[i])] =
+        static_cast<float>(static_cast<double>(memory.residual[i]) / unit.samples);
   }
 }
 

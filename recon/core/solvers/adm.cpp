@@ -77,6 +77,7 @@ class Adm {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return sparse_; }
+  [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return step_.samples(); }
   [[nodiscard]] SpareVectors<T> spare() noexcept {
     return {step_.samples(), step_.row_scratch(), point_, coefficients_, scratch_};
   }

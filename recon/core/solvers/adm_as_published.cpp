@@ -61,6 +61,7 @@ class PublishedAdm {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return picture_; }
+  [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return samples_; }
 
  private:
   /// out = W^(1/2) A Psi' in

@@ -126,6 +126,7 @@ class Admm : public MadeInWorkspace {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return x_; }
+  [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return step_.samples(); }
   [[nodiscard]] SpareVectors<T> spare() noexcept {
     return {step_.samples(), step_.row_scratch(), x_, coefficients_, scratch_};
   }

@@ -51,6 +51,7 @@ class ChambollePock {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return projected_; }
+  [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return samples_; }
   [[nodiscard]] SpareVectors<T> spare() noexcept { return {samples_, residual_, projected_, coefficients_, scratch_}; }
 
  private:

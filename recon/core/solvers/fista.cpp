@@ -62,6 +62,7 @@ class Fista {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return picture_; }
+  [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return samples_; }
   [[nodiscard]] SpareVectors<T> spare() noexcept { return {samples_, residual_, picture_, gradient_, scratch_}; }
 
  private:

@@ -1,5 +1,7 @@
 #include "recon/core/solvers/omp.hpp"
 
+#include <limits>
+
 #include "recon/core/frame/frame_loop.hpp"
 #include "recon/core/parts/square_root.hpp"
 #include "recon/core/parts/vector_sums.hpp"
@@ -8,6 +10,9 @@ namespace compueye::recon::core {
 namespace {
 
 constexpr double dependent_below = 1e-12;  // squared, of the part of an atom that is new
+/// Share of the largest atom's norm below which correlations are rounding.
+template <class T>
+constexpr double seen_above = 16.0 * static_cast<double>(std::numeric_limits<T>::epsilon());
 
 /// Atoms W^(1/2) A psi_j of the elements taken so far and the Cholesky factor of their Gram matrix, packed by rows.
 /// Overlapping receptive fields make nearly parallel atoms, so this part is in double whatever T is.
@@ -92,10 +97,11 @@ class Omp {
 
   /// Takes an element.
   bool iterate(int) noexcept {
-    if (done_ || taken_.count() == most_ || !take_best()) return false;
-    compose();
-    done_ = explained();
-    return true;
+    if (done_ || taken_.count() == most_) return false;
+    const bool took = take_best();
+    compose();  // also where none was taken: trying one has used picture_
+    done_ = took && explained();
+    return took;
   }
 
   bool finish(FrameInfo& info) noexcept {
@@ -106,6 +112,7 @@ class Omp {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return picture_; }
+  [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return samples_; }
 
  private:
   /// back_ = A' row, coefficients_ = Psi A' row
@@ -134,9 +141,13 @@ class Omp {
         squared_norms_[k] -= lacks * static_cast<double>(coefficients_[k]) * static_cast<double>(coefficients_[k]);
       }
     }
+    double largest = 0.0;
+    for (std::size_t k = 0; k < n_; ++k) largest = squared_norms_[k] > largest ? squared_norms_[k] : largest;
+    const double unseen = seen_above<T> * seen_above<T> * largest;
     for (std::size_t k = 0; k < n_; ++k) {
       const double norm = static_cast<double>(problem_.atom_norms[k]);
-      open_[k] = squared_norms_[k] > 1e-6 * norm * norm;  // else rounding is all that is left of it
+      // else rounding is all that there is of it, or all that is left
+      open_[k] = squared_norms_[k] > unseen && squared_norms_[k] > 1e-6 * norm * norm;
     }
   }
 

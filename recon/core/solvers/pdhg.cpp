@@ -60,6 +60,7 @@ class Pdhg {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return gradient_; }
+  [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return dual_step_.samples(); }
   [[nodiscard]] SpareVectors<T> spare() noexcept {
     return {dual_step_.samples(), dual_step_.row_scratch(), gradient_, coefficients_, scratch_};
   }

@@ -33,6 +33,7 @@ class Tikhonov {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return solution_; }
+  [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return step_.samples(); }
 
  private:
   /// Once more is a step of iterative refinement.

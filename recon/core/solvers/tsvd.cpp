@@ -50,6 +50,7 @@ class Tsvd {
   }
 
   [[nodiscard]] const T* picture() const noexcept { return picture_; }
+  [[nodiscard]] const FrameSamples<T>& samples() const noexcept { return samples_; }
 
  private:
   [[nodiscard]] const T* row(std::size_t i) const noexcept { return problem_.modes.left + i * problem_.modes.rank; }

@@ -1,5 +1,7 @@
 #include "recon/core/solvers/admm.hpp"
 
+#include <cmath>
+
 #include "recon/setup/inverse_tables.hpp"
 #include "recon/setup/solver_row_of.hpp"
 #include "recon/setup/thin_step_tables.hpp"
@@ -34,7 +36,7 @@ struct Method {
     const ParityClasses classes = classes_of(from);
     auto problem = TRY(begin_factored<core::AdmmProblem<T>>(from, classes));
     problem->relaxation = static_cast<T>(from.plan.relaxation);
-    problem->l1_reweighting = static_cast<T>(from.plan.l1_reweighting);
+    problem->l1_reweighting = static_cast<T>(std::ldexp(from.plan.l1_reweighting, from.unit.picture));
     if (from.objective.basis == BasisKind::identity) {
       const PenaltyLevels levels =
           penalty_levels(from.objective, from.plan, from.rho_by_rule, classes.rows(), classes.count() > 1);
