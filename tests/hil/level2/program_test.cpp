@@ -2,14 +2,19 @@
 // because the emulated device files read their caller's memory.
 
 #include <doctest/doctest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <array>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "drivers/recording/recording_reader.hpp"
 #include "firmware/app/commands/devices.hpp"
 #include "firmware/app/commands/run.hpp"
 #include "tests/firmware/temporary_folder.hpp"
@@ -70,6 +75,56 @@ void check_balanced(const Json& frames) {
   for (const auto& [reason, count] : frames["dropped"].items()) dropped += count.get<std::uint64_t>();
   CHECK(frames["produced"].get<std::uint64_t>() == frames["delivered"].get<std::uint64_t>() + dropped);
 }
+
+/// No file of this process grows beyond so many bytes, as if the disk were full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    REQUIRE(getrlimit(RLIMIT_FSIZE, &before_) == 0);
+    const rlimit limited{bytes, before_.rlim_max};
+    REQUIRE(setrlimit(RLIMIT_FSIZE, &limited) == 0);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+/// Standard output is a pipe whose reader sleeps until `wakes()`.
+class SleepingReader {
+ public:
+  template <class Wakes>
+  explicit SleepingReader(Wakes wakes) : before_(::dup(STDOUT_FILENO)) {
+    std::array<int, 2> ends{};
+    REQUIRE(::pipe(ends.data()) == 0);
+    REQUIRE(::dup2(ends[1], STDOUT_FILENO) == STDOUT_FILENO);
+    ::close(ends[1]);
+    reader_ = std::thread([from = ends[0], wakes] {
+      static_cast<void>(wait_until(wakes));
+      std::array<char, 4096> read{};
+      while (::read(from, read.data(), read.size()) > 0) {
+      }
+      ::close(from);
+    });
+  }
+  SleepingReader(const SleepingReader&) = delete;
+  SleepingReader& operator=(const SleepingReader&) = delete;
+  ~SleepingReader() {
+    ::dup2(before_, STDOUT_FILENO);
+    ::close(before_);
+    reader_.join();
+  }
+
+ private:
+  int before_;
+  std::thread reader_;
+};
 
 }  // namespace
 
@@ -176,6 +231,51 @@ TEST_CASE("program: a run goes on when the eye is plugged in again") {
   CHECK(json["source_counters"]["rebooted"].get<int>() == 1);
   CHECK(json["source_counters"]["gave_up"].get<int>() == 0);
   check_balanced(json["frames"]);
+}
+
+TEST_CASE(
+    "program: the books balance when the eye is pulled, the disk is full and nobody reads the view, all at once") {
+  HIL_TESTBED(testbed);
+  UsbPort usb(testbed, eye_of("CE-USB", &protocol::usb_bus));
+  usb.plug();
+  wait_for_boot(usb);
+  const test::TemporaryFolder folder;
+  RunOptions options = options_of(copied("generic-usb", folder), 900);
+  options.report = (folder.path() / "report.json").string();
+  options.record = (folder.path() / "eye.rec").string();
+  options.show = true;
+  const auto frames_made = [&] { return usb.cable.with([](auto& device, auto) { return device.truth().frames; }); };
+  std::thread hand([&] {
+    static_cast<void>(wait_until([&] { return frames_made() >= 300; }));
+    usb.cable.inject({.kind = protocol::FaultKind::short_read, .value = 20});
+    usb.unplug();
+    usb.plug();
+  });
+  hal::Result<void> ran;
+  {
+    const FullDisk full(64U << 10U);
+    const SleepingReader reader([&] { return std::filesystem::exists(options.report); });
+    ran = run(options);
+  }
+  hand.join();
+  test::check_error(ran, hal::ErrorCode::no_space, options.record, {});
+  const Json json = Json::parse(test::bytes_of(options.report), nullptr, false);
+  INFO(json.dump());
+  REQUIRE(json.is_object());
+  CHECK(json["frames"]["delivered"].get<int>() == 900);
+  CHECK(json["source_counters"]["unplugged"].get<int>() == 1);
+  check_balanced(json["frames"]);
+
+  auto recording = recording::RecordingReader::open(options.record);
+  REQUIRE(recording);
+  while (recording->next()) {
+  }
+  REQUIRE(recording->end());
+  CHECK(recording->damage().bytes == 0);
+  CHECK(recording->frames() > 0);
+  CHECK(recording->unrecorded() > 0);
+  CHECK(recording->account().balanced());
+  CHECK(recording->account().produced <= json["frames"]["produced"].get<std::uint64_t>());
 }
 
 TEST_CASE("program: an eye that is not there, or does not fit the board, is an error that says so") {
