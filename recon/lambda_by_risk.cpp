@@ -135,7 +135,8 @@ class RiskSearch {
   }
 
   Result<LambdaTrial> trial(const Objective& objective, double k) {
-    auto solver = TRY(Reconstructor::create(response_, objective, plan_, found_.factor, progress_));
+    const Progress progress = tried_.empty() ? progress_ : progress_.unestimated();
+    auto solver = TRY(Reconstructor::create(response_, objective, plan_, found_.factor, progress));
     if (!found_.factor && reusable_factor() && solver.factor().order > 0) found_.factor = solver.factor();
     const Explained seen = TRY(explained(solver, frame_.y));
     const Explained moved = TRY(explained(solver, probed_));

@@ -72,6 +72,11 @@ void ProgressReporter::update(std::string_view what, double done, double total) 
   if (share_ < 1.0 && (since >= style_.line_every_ns || (far && since >= style_.line_gap_ns))) print_line();
 }
 
+void ProgressReporter::expect(std::string_view what, double seconds) {
+  finish();
+  write_(fmt::format("{}: about {}, by estimate\n", visible_text(what), duration(seconds)));
+}
+
 void ProgressReporter::finish() {
   if (!active_) return;
   now_ns_ = clock_.now_ns();

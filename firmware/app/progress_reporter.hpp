@@ -43,6 +43,9 @@ class ProgressReporter {
   /// finite: unknown, only the time elapsed is shown. `done` may go backwards; it is clipped to 0..total.
   void update(std::string_view what, double done, double total);
 
+  /// Says at once, on a line of its own, that `what` will take about so many seconds, by estimate.
+  void expect(std::string_view what, double seconds);
+
   /// Ends the current stage: "what: 100 %, 3.2 s" where a line is due. Idempotent.
   void finish();
 

@@ -174,11 +174,12 @@ void Session::leave(int code, const hal::Error& why) {
 
 recon::Progress Session::progress() {
   if (!reporter_) reporter_.emplace(clock_);
-  return [this](std::string_view what, double done, double total) {
-    working_.store(true, std::memory_order_relaxed);
-    reporter_->update(what, done, total);
-    return !stop_requested_.load(std::memory_order_relaxed);
-  };
+  return {[this](std::string_view what, double done, double total) {
+            working_.store(true, std::memory_order_relaxed);
+            reporter_->update(what, done, total);
+            return !stop_requested_.load(std::memory_order_relaxed);
+          },
+          [this](std::string_view what, double seconds) { reporter_->expect(what, seconds); }};
 }
 
 void Session::end_progress() {

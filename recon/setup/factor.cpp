@@ -14,6 +14,7 @@
 #include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
 #include "recon/setup/row_norms.hpp"
+#include "recon/setup/set_up_time.hpp"
 #include "recon/setup/step_sizes.hpp"
 #include "recon/setup/tall_response.hpp"
 
@@ -83,16 +84,28 @@ Eigen::VectorXd scale_of_class(const ParityClasses& classes, std::size_t c, cons
   return of_class;
 }
 
+/// Of the inverse of one class.
+double seconds_to_invert(Eigen::Index order) {
+  return seconds_of(order, 3.0, [](Eigen::Index small) {
+    Matrix matrix = matrix_to_try(small);
+    ClassNorms norms;
+    static_cast<void>(invert(matrix, 1.0, {}, norms));
+  });
+}
+
 hal::Result<void> invert_blocks(ParityGram& gram, double rho, const std::vector<double>& scale, double rounding,
-                                const Progress& progress) {
+                                double expected_s, const Progress& progress) {
   std::vector<ClassNorms> norms(gram.classes().count());
   std::atomic<bool> definite{true};
-  const bool inverted = on_all_cores(static_cast<int>(gram.classes().count()), "inverse", progress, [&] {
-    return [&](int c) {
-      const auto at = static_cast<std::size_t>(c);
-      if (!invert(gram.block(at), rho, scale_of_class(gram.classes(), at, scale), norms[at])) definite = false;
-    };
-  });
+  const bool inverted = on_all_cores(
+      static_cast<int>(gram.classes().count()), "inverse", progress,
+      [&] {
+        return [&](int c) {
+          const auto at = static_cast<std::size_t>(c);
+          if (!invert(gram.block(at), rho, scale_of_class(gram.classes(), at, scale), norms[at])) definite = false;
+        };
+      },
+      expected_s);
   if (inverted) return check_condition(norms, definite, rho, rounding);
   return hal::fail(hal::ErrorCode::interrupted, "set-up", "stopped before the factor was finished");
 }
@@ -148,8 +161,11 @@ hal::Result<std::vector<T>> packed_inverse(const Response& seeing, MetricKind me
                                            const Progress& progress) {
   ParityGram gram(seeing, metric);
   constexpr double rounding = 0.5 * static_cast<double>(std::numeric_limits<T>::epsilon());
+  const double inverse_s =
+      seconds_of_classes(gram.classes(), [&](std::size_t c) { return seconds_to_invert(gram.classes().order(c)); });
+  expect_set_up(progress, seconds_to_fill(gram) + inverse_s);
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
-  if (auto done = invert_blocks(gram, rho, loud_row_scale(seeing, rho), rounding, progress); !done)
+  if (auto done = invert_blocks(gram, rho, loud_row_scale(seeing, rho), rounding, inverse_s, progress); !done)
     return tl::unexpected(done.error());
   std::vector<T> packed;
   packed.reserve(factor_size(gram.classes()));
@@ -164,6 +180,7 @@ hal::Result<std::vector<T>> packed_inverse(const Response& seeing, MetricKind me
 
 hal::Result<PixelFactor> pixel_factor(const Response& seeing, MetricKind metric, double rho, double rounding,
                                       const Progress& progress) {
+  expect_set_up(progress, seconds_of_triangle(seeing) + seconds_to_invert(seeing.cols()));
   const Matrix r = TRY(triangle(seeing, progress));
   Matrix matrix = r.transpose() * r;
   if (metric == MetricKind::identity) {

@@ -2,18 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <string_view>
 #include <vector>
 
 #include "hal/result.hpp"
 #include "recon/core/bases/basis.hpp"
+#include "recon/problem/progress.hpp"
 #include "recon/problem/response.hpp"
 
 namespace compueye::recon {
-
-/// `done` of `total` units of set-up work; return false to give up (error: interrupted).
-using Progress = std::function<bool(std::string_view what, double done, double total)>;
 
 /// K0 of the quadratic step (core/metric.hpp).
 enum class MetricKind : std::uint8_t { identity, smoothing };

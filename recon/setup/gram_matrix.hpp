@@ -69,6 +69,7 @@ class ParityGram {
   /// Computes all blocks. Error: interrupted.
   [[nodiscard]] hal::Result<void> fill(const Progress& progress);
 
+  [[nodiscard]] const GramMatrix& matrix() const noexcept { return gram_; }
   [[nodiscard]] const ParityClasses& classes() const noexcept { return classes_; }
   [[nodiscard]] Eigen::MatrixXd& block(std::size_t c) noexcept { return blocks_[c]; }
   [[nodiscard]] const Eigen::MatrixXd& block(std::size_t c) const noexcept { return blocks_[c]; }

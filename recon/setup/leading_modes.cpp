@@ -7,6 +7,7 @@
 #include "hal/try.hpp"
 #include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
+#include "recon/setup/set_up_time.hpp"
 #include "recon/setup/shorter_side.hpp"
 #include "recon/setup/symmetric_modes.hpp"
 #include "recon/setup/tall_response.hpp"
@@ -29,6 +30,22 @@ bool leading(const Eigen::MatrixXd& gram, Eigen::Index count, SymmetricModes& mo
   const Eigen::Index values = std::min(count + 1, gram.rows());
   modes = {all.values.tail(values).reverse(), all.vectors.rightCols(count).rowwise().reverse()};
   return true;
+}
+
+/// Lanczos is products with the matrix and with the vectors found so far, which seldom takes more than three rounds.
+double seconds_of_leading(Eigen::Index order, Eigen::Index count) {
+  if (decomposes_whole(order, count)) return seconds_of_all_modes(order);
+  constexpr double rounds = 3.0;
+  const double vectors = static_cast<double>(2 * count + 20);
+  const double products = seconds_of(order, 2.0,
+                                     [](Eigen::Index small) {
+                                       const Eigen::MatrixXd tried = matrix_to_try(small);
+                                       Eigen::VectorXd v = Eigen::VectorXd::Ones(small);
+                                       for (int k = 0; k < 100; ++k)
+                                         v = (tried.selfadjointView<Eigen::Lower>() * v).normalized();
+                                     }) /
+                          100.0;
+  return rounds * vectors * products * (1.0 + 2.0 * vectors / static_cast<double>(order));
 }
 
 void append(const SymmetricModes& pairs, std::size_t count, std::vector<float>& packed) {
@@ -85,17 +102,24 @@ std::size_t modes_size(const ParityClasses& classes, int rank) noexcept {
 hal::Result<std::vector<float>> leading_modes(const Response& seeing, int rank, const Progress& progress) {
   if (is_tall(seeing)) return modes_of_tall(seeing, rank, progress);
   ParityGram gram(seeing, MetricKind::identity);
-  if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
   const ParityClasses& classes = gram.classes();
+  const double modes_s = seconds_of_classes(classes, [&](std::size_t c) {
+    return seconds_of_leading(classes.order(c), static_cast<Eigen::Index>(modes_of_class(classes, c, rank)));
+  });
+  expect_set_up(progress, seconds_to_fill(gram) + modes_s);
+  if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
   std::vector<SymmetricModes> pairs(classes.count());
   std::atomic<bool> settled{true};
-  const bool done = on_all_cores(static_cast<int>(classes.count()), "modes", progress, [&] {
-    return [&](int c) {
-      const auto at = static_cast<std::size_t>(c);
-      const std::size_t count = modes_of_class(classes, at, rank);
-      if (count > 0 && !leading(gram.block(at), static_cast<Eigen::Index>(count), pairs[at])) settled = false;
-    };
-  });
+  const bool done = on_all_cores(
+      static_cast<int>(classes.count()), "modes", progress,
+      [&] {
+        return [&](int c) {
+          const auto at = static_cast<std::size_t>(c);
+          const std::size_t count = modes_of_class(classes, at, rank);
+          if (count > 0 && !leading(gram.block(at), static_cast<Eigen::Index>(count), pairs[at])) settled = false;
+        };
+      },
+      modes_s);
   if (!done) return hal::fail(hal::ErrorCode::interrupted, "set-up", "stopped before the modes were found");
   if (!settled) {
     return hal::fail(hal::ErrorCode::unsupported, "modes",

@@ -9,6 +9,7 @@
 #include "recon/problem/number_text.hpp"
 #include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/on_all_cores.hpp"
+#include "recon/setup/set_up_time.hpp"
 #include "recon/setup/shorter_side.hpp"
 #include "recon/setup/symmetric_modes.hpp"
 #include "recon/setup/tall_response.hpp"
@@ -81,17 +82,23 @@ hal::Result<ModeTable> modes_of_tall(const Response& seeing, int rank, double le
 hal::Result<ModeTable> singular_modes(const Response& seeing, int rank, double least_square, const Progress& progress) {
   if (is_tall(seeing)) return modes_of_tall(seeing, rank, least_square, progress);
   ParityGram gram(seeing, MetricKind::identity);
+  const double modes_s =
+      seconds_of_classes(gram.classes(), [&](std::size_t c) { return seconds_of_all_modes(gram.classes().order(c)); });
+  expect_set_up(progress, seconds_to_fill(gram) + modes_s);
   if (auto made = gram.fill(progress); !made) return tl::unexpected(made.error());
   std::vector<Eigen::VectorXd> squares(gram.classes().count());
-  const bool done = on_all_cores(static_cast<int>(gram.classes().count()), "singular values", progress, [&] {
-    return [&](int c) {
-      const auto at = static_cast<std::size_t>(c);
-      if (gram.block(at).size() == 0) return;
-      SymmetricModes modes = symmetric_modes(gram.block(at));
-      squares[at] = std::move(modes.values);
-      gram.block(at) = std::move(modes.vectors);
-    };
-  });
+  const bool done = on_all_cores(
+      static_cast<int>(gram.classes().count()), "singular values", progress,
+      [&] {
+        return [&](int c) {
+          const auto at = static_cast<std::size_t>(c);
+          if (gram.block(at).size() == 0) return;
+          SymmetricModes modes = symmetric_modes(gram.block(at));
+          squares[at] = std::move(modes.values);
+          gram.block(at) = std::move(modes.vectors);
+        };
+      },
+      modes_s);
   if (!done) return hal::fail(hal::ErrorCode::interrupted, "set-up", "stopped before the singular values were found");
   const auto modes = chosen_modes(sorted_modes(squares), rank, least_square);
   if (!modes) return tl::unexpected(modes.error());

@@ -75,6 +75,8 @@ double bound(const RoundedStep& step) {
 
 double rounding(const RoundedStep& step) {
   if (step.gains.size() == 0) return 0.0;
+  const double most = bound(step);
+  if (!(most > 0.0)) return 0.0;  // nothing to iterate on: vectors that are stored as they are
   const RelativeError error(step);
   if (error.rows() <= whole_below) return of_whole(error);
   constexpr Eigen::Index krylov = 40;
@@ -82,8 +84,8 @@ double rounding(const RoundedStep& step) {
   constexpr double tolerance = 0.02, margin = 1.05;
   Spectra::SymEigsSolver<RelativeError> solver(const_cast<RelativeError&>(error), 1, krylov);
   solver.init();
-  if (solver.compute(Spectra::SortRule::LargestMagn, most_restarts, tolerance) < 1) return bound(step);
-  return std::min(margin * std::abs(solver.eigenvalues()[0]), bound(step));
+  if (solver.compute(Spectra::SortRule::LargestMagn, most_restarts, tolerance) < 1) return most;
+  return std::min(margin * std::abs(solver.eigenvalues()[0]), most);
 }
 
 }  // namespace compueye::recon

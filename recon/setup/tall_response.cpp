@@ -2,10 +2,12 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "hal/try.hpp"
 #include "recon/setup/on_all_cores.hpp"
+#include "recon/setup/set_up_time.hpp"
 #include "recon/setup/symmetric_modes.hpp"
 
 namespace compueye::recon {
@@ -68,7 +70,24 @@ hal::Result<Eigen::MatrixXd> triangle(const Response& seeing, const Progress& pr
   return whole;
 }
 
+double seconds_of_triangle(const Response& seeing) {
+  constexpr double worth_trying = 1e9;
+  const double rows = seeing.rows(), cols = seeing.cols(), operations = 2.0 * rows * cols * cols;
+  if (operations < worth_trying) return 0.0;
+  // Made on all cores, then taken together, half as much again, on one.
+  constexpr Eigen::Index tried = 96;
+  const double seconds =
+      seconds_of_trial([] { static_cast<void>(reduced(matrix_to_try(pixels_a_block * tried).leftCols(tried))); });
+  const double share = operations / (2.0 * pixels_a_block * std::pow(tried, 3.0));
+  return seconds * share * (1.0 / cores() + 0.5);
+}
+
 hal::Result<RightPairs> right_pairs(const Response& seeing, const Progress& progress) {
+  const double pairs_s = seconds_of(seeing.cols(), 3.0, [](Eigen::Index small) {
+    RightPairs pairs;
+    right_singular_pairs(matrix_to_try(small), pairs.values, pairs.vectors);
+  });
+  expect_set_up(progress, seconds_of_triangle(seeing) + pairs_s);
   const Eigen::MatrixXd r = TRY(triangle(seeing, progress));
   RightPairs pairs;
   right_singular_pairs(r, pairs.values, pairs.vectors);

@@ -14,6 +14,9 @@ namespace compueye::recon {
 /// quarter of A's. Error interrupted.
 [[nodiscard]] hal::Result<Eigen::MatrixXd> triangle(const Response& seeing, const Progress& progress);
 
+/// By estimate (recon/setup/set_up_time.hpp).
+[[nodiscard]] double seconds_of_triangle(const Response& seeing);
+
 /// Singular values of a tall response, largest first, and its right singular vectors, column by column. Error
 /// interrupted.
 struct RightPairs {

@@ -186,9 +186,9 @@ Result<Comparison> compare(const Board& board, const CompareOptions& options, co
   Comparison comparison = TRY(head_of(board, options, samples));
   double done = 0.0;
   // One stage from the first solver to the last, so that its remaining time means something.
-  const recon::Progress overall = [&](std::string_view, double, double) {
-    return progress("comparing", done, static_cast<double>(all.size()));
-  };
+  const recon::Progress overall = {
+      [&](std::string_view, double, double) { return progress("comparing", done, static_cast<double>(all.size())); },
+      [&](std::string_view what, double seconds) { progress.expect(what, seconds); }};
   Runner runner(board, samples, clock, overall);
   std::optional<hal::Error> first_failure;
   for (const Contender& contender : all) {

@@ -51,6 +51,24 @@ TEST_CASE("plain progress comes in rare lines with the time left") {
   CHECK(screen.count('\r') == 0);
 }
 
+TEST_CASE("an estimate is a line of its own at once, in a log and on a terminal, and the work's own progress follows") {
+  for (const ProgressStyle& style : {ProgressStyle{}, terminal()}) {
+    hal::VirtualClock clock;
+    Screen screen;
+    ProgressReporter progress(clock, style, screen.writer());
+    progress.expect("set-up", 251.0);
+    CHECK(screen.text.starts_with("set-up: "));
+    CHECK(screen.shows("4 min 11 s"));
+    CHECK(screen.shows("estimate"));
+    CHECK(screen.text.ends_with("\n"));
+    CHECK(screen.count('\n') == 1);
+    progress.update("inverse", 0.0, 1.0);
+    clock.advance(20 * second);
+    progress.update("inverse", 0.2, 1.0);
+    CHECK(screen.shows("1 min 20 s left"));
+  }
+}
+
 TEST_CASE("plain progress of a slow task still speaks up") {
   hal::VirtualClock clock;
   Screen screen;
