@@ -89,7 +89,13 @@ Reconstructor::~Reconstructor() = default;
 hal::Result<Reconstructor> Reconstructor::create(const Response& response, const Objective& objective, const Plan& plan,
                                                  std::optional<Factor> factor, const Progress& progress) {
   if (plan.op && is_lossy(*plan.op)) {
-    return create_as_applied(quantised(response, *plan.op), objective, plan, std::move(factor), progress);
+    const Response rounded = quantised(response, *plan.op);
+    if (keeps_details(response, rounded)) {
+      return create_as_applied(rounded, objective, plan, std::move(factor), progress);
+    }
+    Plan exact = plan;
+    exact.op.reset();
+    return create_as_applied(response, objective, exact, std::move(factor), progress);
   }
   return create_as_applied(response, objective, plan, std::move(factor), progress);
 }

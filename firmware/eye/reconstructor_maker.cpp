@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hal/try.hpp"
+#include "recon/option_names.hpp"
 #include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
 #include "recon/setup/solver_row.hpp"
@@ -24,7 +25,12 @@ std::string_view name(FactorOrigin origin) noexcept {
 ReconstructorMaker::ReconstructorMaker(const recon::Response& response, std::optional<recon::OperatorKind> op,
                                        std::string cache, Memory memory)
     : response_(response), cache_(std::move(cache)), memory_(memory) {
-  if (op && recon::is_lossy(*op)) rounded_ = recon::quantised(response, *op);
+  if (!op || !recon::is_lossy(*op)) return;
+  rounded_ = recon::quantised(response, *op);
+  if (recon::keeps_details(response, *rounded_)) return;
+  rounded_.reset();
+  notes_.push_back("operator " + std::string(recon::name(*op)) +
+                   " would round this response more than its details bear, so A is applied with every digit");
 }
 
 hal::Result<recon::Reconstructor> ReconstructorMaker::make(const recon::Objective& objective, const recon::Plan& plan,

@@ -57,4 +57,26 @@ Response quantised(const Response& response, OperatorKind kind) {
   return std::move(*rounded).with_image(response.image_rows(), response.image_cols()).value();
 }
 
+bool keeps_details(const Response& response, const Response& rounded) {
+  std::vector<double> row(static_cast<std::size_t>(response.cols()), 0.0);
+  double off = 0.0, details = 0.0;
+  for (int m = 0; m < response.rows(); ++m) {
+    double sum = 0.0;
+    response.for_each_in_row(m, [&](std::int32_t n, double v) {
+      row[static_cast<std::size_t>(n)] = v;
+      sum += v;
+    });
+    const double mean = sum / response.cols();
+    rounded.for_each_in_row(m, [&](std::int32_t n, double v) {
+      const double miss = row[static_cast<std::size_t>(n)] - v;
+      off += miss * miss;
+    });
+    response.for_each_in_row(m, [&](std::int32_t n, double v) {
+      details += v * (v - mean);
+      row[static_cast<std::size_t>(n)] = 0.0;
+    });
+  }
+  return off <= most_rounding * most_rounding * details;
+}
+
 }  // namespace compueye::recon

@@ -16,6 +16,12 @@ namespace compueye::recon {
 /// whole number; a row whose largest entry is below least_row_peak has no scale and becomes blind.
 [[nodiscard]] Response quantised(const Response& response, OperatorKind kind);
 
+/// Whether rounding leaves what the rows tell beyond the mean brightness of the picture: ||A - rounded||_F is at most
+/// most_rounding of ||A - A 1 1'/N||_F. On an eye whose rows stand on a pedestal the details drown in the rounding of
+/// it: objectives double at about .2 in bf16 and .3 in int8.
+[[nodiscard]] bool keeps_details(const Response& response, const Response& rounded);
+inline constexpr double most_rounding = 0.06;
+
 inline constexpr double least_row_peak = 1e-30;
 
 /// Of a row with this largest magnitude; 0 below least_row_peak.

@@ -122,3 +122,24 @@ TEST_CASE("a stored factor with right checksums and wrong values is made again, 
     CHECK(frame(FactorOrigin::replaced) == right);
   }
 }
+
+TEST_CASE("a response whose details rounding would swallow is not rounded, which is said") {
+  tests::Random random(7);
+  for (const double pedestal : {0.0, 200.0}) {
+    CAPTURE(pedestal);
+    std::vector<double> values(20 * 64);
+    for (double& value : values) value = pedestal + random.uniform();
+    const auto a = recon::Response::from_dense(20, 64, values).value().with_image(8, 8).value();
+    for (const auto kind : {recon::OperatorKind::dense_runs_bf16, recon::OperatorKind::dense_runs_int8}) {
+      recon::Plan plan;
+      plan.op = kind;
+      ReconstructorMaker maker(a, kind, {});
+      const auto made_of_it = maker.make({}, plan, {});
+      REQUIRE(made_of_it);
+      const bool rounds = pedestal == 0.0;
+      CHECK((made_of_it->operating_point().op == kind) == rounds);
+      CHECK((maker.response().content_hash() != a.content_hash()) == rounds);
+      CHECK(maker.notes().size() == (rounds ? 0 : 1));
+    }
+  }
+}

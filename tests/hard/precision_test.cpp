@@ -117,13 +117,14 @@ TEST_CASE("where float32 breaks is far beyond any eye, and health says so before
   }
 }
 
-TEST_CASE("where rounded responses break: the problem that is solved is another one") {
+TEST_CASE("a response is not rounded where that would make another problem of it") {
   struct Floor {
     recon::OperatorKind kind;
     double decades;
   };
   for (const Floor& floor :
-       {Floor{recon::OperatorKind::dense_runs_bf16, 1.0}, Floor{recon::OperatorKind::dense_runs_int8, 1.0}}) {
+       {Floor{recon::OperatorKind::dense_runs_bf16, 1.0}, Floor{recon::OperatorKind::dense_runs_int8, 0.5}}) {
+    bool fell_back = false;
     const auto holds = [&](double amount) {
       Raised raised(amount);
       const HardSetting setting{solver_named("admm"), recon::BasisKind::identity, recon::ConstraintKind::nonnegative,
@@ -135,15 +136,20 @@ TEST_CASE("where rounded responses break: the problem that is solved is another 
       const HardRun rounded = run(objective, plan, raised.problem);
       if (rounded.refused || whole.refused) return false;
       CHECK(rounded.info.health != recon::Health::invalid);
+      fell_back = rounded.info.point.op != floor.kind;
       const auto worth = [&](const HardRun& done) {
         return raised.judge.value(objective, setting.solver, raised.judge.picture(done.x));
       };
       return worth(rounded) <= 2.0 * worth(whole);
     };
-    const double found = breaks_at(-2.0, 4.0, holds);
-    std::printf("%s keeps the objective within twice until the mean stands 10^%.1f above the details\n",
-                std::string(recon::name(floor.kind)).c_str(), found);
-    CHECK(found >= floor.decades);
+    for (const double decades : {-2.0, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0}) {
+      CAPTURE(decades);
+      CHECK(holds(std::pow(10.0, decades)));
+      if (decades <= floor.decades) CHECK_FALSE(fell_back);
+    }
+    const double guarded = breaks_at(-2.0, 4.0, [&](double amount) { return holds(amount) && !fell_back; });
+    std::printf("%s is used until the mean stands 10^%.1f above the details\n",
+                std::string(recon::name(floor.kind)).c_str(), guarded);
   }
 }
 
