@@ -248,3 +248,59 @@ TEST_CASE("a clock that is set while frames are lost: no time is trusted that is
     }
   }
 }
+
+TEST_CASE("a quartz that is four in a hundred fast makes no number unbelievable, however long nobody reads") {
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus->name);
+    auto emulator = eye_settings(bus);
+    emulator.fifo_bytes = 4096;
+    EyeRig rig(emulator, source_settings(bus), std::make_unique<hal::VirtualClock>(10 * second), 40'000.0);
+    REQUIRE(rig.start());
+    read_frames(rig, 20);
+    rig.clock.advance(20 * second);
+    read_frames(rig, 200);
+    CHECK(rig.source().failures()[Failure::wrong_number] == 0);
+    CHECK(rig.source().failures()[Failure::restart] == 0);
+    CHECK(unaccounted(rig) == 0);
+  }
+}
+
+TEST_CASE("an eye that went while nobody looked: no frame is invented for the time after it was last seen") {
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus->name);
+    EyeRig rig(eye_settings(bus));
+    rig.estimates_may_err = true;
+    REQUIRE(rig.start());
+    read_frames(rig, 20);
+    rig.inject({.kind = FaultKind::unplug, .at_ns = rig.clock.now_ns() + 30 * ms, .duration_ns = 4 * second});
+    rig.clock.advance(3 * second);
+    read_frames(rig, 20);
+    CHECK(rig.miscounted() <= 0);
+    CHECK(unaccounted(rig) >= -4);
+    CHECK(unaccounted(rig) <= 0);
+  }
+}
+
+TEST_CASE("an eye that is given up still tells how many frames it made, though the reader is short of time") {
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus->name);
+    DeviceSettings settings = source_settings(bus);
+    settings.recovery_limit_ns = 0;
+    EyeRig rig(eye_settings(bus), settings);
+    REQUIRE(rig.start());
+    read_frames(rig, 20);
+    rig.inject({.kind = FaultKind::silence, .duration_ns = 0});
+    int unanswered = 0;
+    rig.way->at_request = [&](Request request, auto& outcome) {
+      if (request != Request::status || rig.source().recovering() || unanswered >= 3) return;
+      ++unanswered;
+      outcome = tl::unexpected(hal::timed_out().value());
+    };
+    auto end = rig.next_frame(second, 20 * ms);
+    REQUIRE_FALSE(end);
+    CHECK(end.error().code == hal::ErrorCode::disconnected);
+    CHECK(unanswered == 3);
+    CHECK(rig.source().account().estimated == 0);
+    CHECK(unaccounted(rig) == 0);
+  }
+}

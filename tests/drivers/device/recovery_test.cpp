@@ -1,5 +1,10 @@
 // What recovery promises when faults meet: it ends, in time, and blames the device for what the device did.
 
+#include <algorithm>
+#include <vector>
+
+#include "drivers/device/stream_reader.hpp"
+#include "drivers/protocol/frame_header.hpp"
 #include "tests/drivers/device/eye_rig.hpp"
 #include "tests/hal/error_check.hpp"
 
@@ -133,4 +138,75 @@ TEST_CASE("create() ends in its time, however slowly a long description comes") 
     CHECK(clock.now_ns() <= 11 * second + 100 * ms);
     test::check_error(made, ErrorCode::timeout, "emulator " + std::string(bus->name), {"1.0"});
   }
+}
+
+TEST_CASE("an eye that comes back with a description that is slow to come is given up in time") {
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus->name);
+    auto emulator = eye_settings(bus, bus == &hid_bus ? 200 : 65535);
+    emulator.fifo_bytes = std::size_t{1} << 21U;
+    DeviceSettings settings = source_settings(bus);
+    settings.start_limit_ns = second;
+    settings.recovery_limit_ns = 2 * second;
+    EyeRig rig(emulator, settings);
+    REQUIRE(rig.start());
+    read_frames(rig, 3);
+    rig.way->at_request = [&](Request request, const auto&) {
+      if (request == Request::get_desc) rig.clock.advance(95 * ms);
+    };
+    rig.inject({.kind = FaultKind::unplug, .duration_ns = 10 * ms});
+    const std::int64_t began_ns = rig.clock.now_ns();
+    // Past the rig, which wants every deadline kept to the nanosecond; here a page is as late as it is.
+    auto end = rig.source().read(rig.clock.now_ns() + second);
+    while (!end && end.error().code == ErrorCode::timeout) end = rig.source().read(rig.clock.now_ns() + second);
+    test::check_error(end, ErrorCode::disconnected, "CE-1", {"1.0"});
+    CHECK(rig.clock.now_ns() - began_ns <= 4 * second);
+  }
+}
+
+TEST_CASE("an eye that starts anew says anew what it is, though nobody opens it again") {
+  for (const Bus* const bus : buses) {
+    CAPTURE(bus->name);
+    auto emulator = eye_settings(bus);
+    emulator.boot_ns = 0;
+    EyeRig rig(emulator);
+    REQUIRE(rig.start());
+    read_frames(rig, 3);
+    int opened = 0, described = 0;
+    rig.way->at_open = [&] { ++opened; };
+    rig.way->at_request = [&](Request request, const auto&) { described += request == Request::get_desc ? 1 : 0; };
+    rig.inject({.kind = FaultKind::reboot});
+    read_frames(rig, 3);
+    CHECK(opened == 0);
+    CHECK(described > 0);
+  }
+}
+
+TEST_CASE("a reader looks at hostile bytes in pieces of bounded work") {
+  std::vector<std::byte> chunk(std::size_t{1} << 16U);
+  protocol::FrameHeader hostile;
+  hostile.n_ch = 32760;
+  hostile.payload_bytes = 65520;
+  for (std::size_t at = 0; at + protocol::header_bytes <= chunk.size(); at += protocol::header_bytes) {
+    protocol::store(hostile, std::span(chunk).subspan(at).first<protocol::header_bytes>());
+  }
+  const auto reader = make_stream_reader(usb_bus.framing, eye_settings(&usb_bus, 65535).descriptor);
+  reader->begin_run();
+  reader->begin_stream(1, 10 * ms);
+  reader->push(chunk, 100);
+  CHECK_FALSE(reader->take());
+  reader->push(chunk, 100);  // completes what each of the first wants
+  const auto wrong = [&] {
+    FailureCounters failures;
+    reader->add_failures(failures);
+    return failures[Failure::crc_error];
+  };
+  std::uint64_t most = 0;
+  do {
+    const std::uint64_t before = wrong();
+    CHECK_FALSE(reader->take());
+    most = std::max(most, wrong() - before);
+  } while (reader->has_more());
+  CHECK(most > 0);
+  CHECK(most <= 20);  // of 64 KiB each
 }
