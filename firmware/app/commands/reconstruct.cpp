@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -82,7 +83,8 @@ Result<Inputs> read_inputs(const ReconstructOptions& o, const ProblemStatement& 
 Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, const Board& board, const Inputs& inputs,
                                                 const recon::Progress& progress) {
   auto found = recon::lambda_by_risk(*inputs.response, board.objective, board.plan,
-                                     {inputs.frames.samples_of(0), inputs.frames.weights_of(0), board.noise_sigma()},
+                                     {inputs.frames.samples_of(inputs.frames.first_sound),
+                                      inputs.frames.weights_of(inputs.frames.first_sound), board.noise_sigma()},
                                      std::nullopt, progress);
   if (!found && found.error().code != ErrorCode::interrupted) found.error().place = o.samples;
   return found;
@@ -113,15 +115,18 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, Board board, co
   return made;
 }
 
-Result<void> check_health(const recon::FrameInfo& info, std::int64_t frame) {
-  if (info.health != recon::Health::invalid) return {};
-  return hal::fail(hal::ErrorCode::out_of_range, fmt::format("frame {}", frame),
-                   "could not be reconstructed, its numbers left the range of the solver, expected samples in white "
-                   "pixels; check the units of the response and the samples, or try --precision f64");
+/// A frame that cannot be solved is black and counted, as long as there is another.
+Result<void> check_health(std::span<const FrameRecord> records) {
+  const bool none = std::all_of(records.begin(), records.end(),
+                                [](const FrameRecord& r) { return r.info.health == recon::Health::invalid; });
+  if (!none) return {};
+  return hal::fail(hal::ErrorCode::out_of_range, "frame 0",
+                   "could not be reconstructed, nor any other: its numbers left the range of the solver, expected "
+                   "samples in white pixels; check the units of the response and the samples, or try --precision f64");
 }
 
-/// Solves every frame in order and hands the pictures to `outputs`. Errors: interrupted; out_of_range when a frame's
-/// numbers leave the range of the precision, named by frame; those of `outputs`.
+/// Solves every frame in order and hands the pictures to `outputs`. Errors: interrupted; out_of_range when the numbers
+/// of every frame leave the range of the precision; those of `outputs`.
 Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& reconstructor,
                                                     std::optional<double> sigma, const FrameInputs& inputs,
                                                     const Truth* truth, PictureOutputs& outputs, Session& session) {
@@ -142,14 +147,15 @@ Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& 
     record.info = reconstructor.solve(inputs.samples_of(f), inputs.weights_of(f), workspace.span(), picture);
     record.solve_ms = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-6;
     TRY(session.check_stop());
-    TRY(check_health(record.info, f));
-    if (fitter) record.fit = fitter->fit(record.info, inputs.samples_of(f), inputs.weights_of(f), picture);
+    const bool solved = record.info.health != recon::Health::invalid;
+    if (fitter && solved) record.fit = fitter->fit(record.info, inputs.samples_of(f), inputs.weights_of(f), picture);
     record.clipped_pixels = TRY(outputs.add(picture));
-    if (truth != nullptr) record.quality = TRY(truth->compare(f, picture));
+    if (truth != nullptr && solved) record.quality = TRY(truth->compare(f, picture));
     records.push_back(record);
   }
   tell(inputs.frames);
   session.end_progress();
+  TRY(check_health(records));
   return records;
 }
 

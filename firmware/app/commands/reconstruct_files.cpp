@@ -92,10 +92,21 @@ void set_remaining(const SampleArray& weights, std::span<const double> largest, 
   if (inputs.max_reweighted == 0) inputs.weights.clear();
 }
 
+hal::Error no_sample(const std::string& file, const std::string& place, double value, double scaled) {
+  return {ErrorCode::out_of_range, file,
+          fmt::format("{} is {}, expected a finite sample{} (counted from 0); give it the weight 0 with --weights to "
+                      "leave it out",
+                      place, value, std::isfinite(scaled) ? " within float32" : "")};
+}
+
+/// A sample that is none is NaN for the solver, which gives that frame up. Error: there is one in every frame.
 Result<void> set_samples(const std::string& file, const SampleArray& samples, const SampleArray* weights,
                          FrameInputs& inputs) {
   inputs.samples.reserve(samples.values.size());
+  inputs.first_sound = samples.frames;
+  std::optional<hal::Error> first;
   for (std::int64_t f = 0; f < samples.frames; ++f) {
+    bool sound = true;
     const auto frame = samples.frame(f);
     const auto weight = weights == nullptr ? std::span<const double>() : weights->frame(weights->frames == 1 ? 0 : f);
     for (std::size_t m = 0; m < frame.size(); ++m) {
@@ -104,16 +115,15 @@ Result<void> set_samples(const std::string& file, const SampleArray& samples, co
         continue;
       }
       const double scaled = frame[m] * (inputs.row_scale.empty() ? 1.0 : inputs.row_scale[m]);
-      if (!std::isfinite(scaled) || std::abs(scaled) > std::numeric_limits<float>::max()) {
-        return fail(ErrorCode::out_of_range, file,
-                    fmt::format("{} is {}, expected a finite sample{} (counted from 0); give it the weight 0 with "
-                                "--weights to leave it out",
-                                where(samples, f, static_cast<std::int64_t>(m)), frame[m],
-                                std::isfinite(frame[m]) ? " within float32" : ""));
-      }
-      inputs.samples.push_back(static_cast<float>(scaled));
+      const bool fits = std::abs(scaled) <= std::numeric_limits<float>::max();
+      inputs.samples.push_back(fits ? static_cast<float>(scaled) : std::numeric_limits<float>::quiet_NaN());
+      if (fits) continue;
+      sound = false;
+      if (!first) first = no_sample(file, where(samples, f, static_cast<std::int64_t>(m)), frame[m], scaled);
     }
+    if (sound) inputs.first_sound = std::min(inputs.first_sound, f);
   }
+  if (first && inputs.first_sound == samples.frames) return tl::unexpected(*first);
   return {};
 }
 

@@ -24,7 +24,8 @@ struct FrameInputs {
   std::int64_t frames = 1;
   bool has_frame_axis = false;    ///< whether the samples came as (frames, M)
   std::size_t channels = 0;       ///< M
-  std::vector<float> samples;     ///< frames * M, scaled; 0 where the weight is
+  std::vector<float> samples;     ///< frames * M, scaled; 0 where the weight is, NaN for what is no sample
+  std::int64_t first_sound = 0;   ///< the first frame without such a NaN
   std::vector<float> weights;     ///< frames * M of 0..1, what remains of the weights; empty: one everywhere
   std::vector<double> row_scale;  ///< M square roots of the largest weights; empty: one everywhere
   int max_reweighted = 0;         ///< most seeing channels of a frame whose remaining weight is not one
@@ -36,8 +37,8 @@ struct FrameInputs {
 
 /// `weights` may be an empty path. Weights of shape (M,) hold for every frame.
 /// Errors: those of read_samples(); mismatch (channels that are not the response's rows, frames that differ);
-/// out_of_range (NaN or infinity in a sample whose weight is not 0, a weight that is negative or not finite, all
-/// weights 0), naming file, frame and channel.
+/// out_of_range (NaN or infinity in every frame, in a sample whose weight is not 0; a weight that is negative or not
+/// finite, all weights 0), naming file, frame and channel.
 [[nodiscard]] hal::Result<FrameInputs> read_frame_inputs(const recon::Response& response, const std::string& samples,
                                                          const std::string& weights);
 

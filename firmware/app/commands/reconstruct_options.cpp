@@ -194,8 +194,8 @@ std::string reconstruct_footer() {
          "One of --lambda, --sigma, --epsilon (" +
          recon::names_of_solvers(takes_epsilon) + ") and --rank (" + recon::names_of_solvers(has_rank) +
          "), always. Weights are inverse variances\n"
-         "relative to --sigma; with (frames, M) they change from frame to frame. A NaN in y is an error unless its\n"
-         "weight is 0.\n"
+         "relative to --sigma; with (frames, M) they change from frame to frame. A NaN in y counts where its weight\n"
+         "is not 0: that frame is black and told, an error where there is no other.\n"
          "Ctrl-C leaves no files behind. Exit codes: 0 done, 1 failed, 2 wrong usage.\n\n"
          "Examples:\n"
          "  compueye response --board boards/sim-8x8 --out A.mtx\n"

@@ -1,6 +1,7 @@
 #include "firmware/app/commands/reconstruct_report.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -162,28 +163,51 @@ void add_fit(std::span<const FrameRecord> frames, Figures& f) {
              ": do response, distance and samples belong together?");
 }
 
+bool is_invalid(const FrameRecord& record) {
+  return record.info.health == recon::Health::invalid;
+}
+
+std::vector<FrameRecord> without_invalid(std::span<const FrameRecord> frames) {
+  std::vector<FrameRecord> solved;
+  std::copy_if(frames.begin(), frames.end(), std::back_inserter(solved),
+               [](const FrameRecord& record) { return !is_invalid(record); });
+  return solved;
+}
+
+/// A file keeps the numbers of its frames, so what could not be solved is black in it.
+void add_passed_over(std::span<const FrameRecord> frames, Figures& f) {
+  const auto first = std::find_if(frames.begin(), frames.end(), is_invalid);
+  f.add("first_invalid", first == frames.end() ? Value() : Value(first - frames.begin()));
+  if (first == frames.end()) return;
+  f.line("passed over",
+         "{health.invalid:# frame}, the first is {first_invalid:,} (counted from 0): a sample is no number, or numbers "
+         "left the range of the solver; black in the files");
+}
+
 }  // namespace
 
 Figures figures_of(const ReconstructOptions& o, std::optional<double> sigma, const recon::Reconstructor& r,
                    double setup_s, std::span<const FrameRecord> frames) {
-  const std::string of_frames = frames.size() > 1 ? " (median)" : "";
+  const std::vector<FrameRecord> solved = without_invalid(frames);
+  const std::string of_frames = solved.size() > 1 ? " (median)" : "";
   Figures f;
   add_problem(o, sigma, r, f);
   f.add("frames", frames.size(), "frames", "{:,}");
   f.add("setup_s", setup_s, "set-up", "{:duration}");
-  f.add("median_frame_ms", median(frames, [](const FrameRecord& each) { return each.solve_ms; }), "time a frame",
+  f.add("median_frame_ms", median(solved, [](const FrameRecord& each) { return each.solve_ms; }), "time a frame",
         "{:3} ms (median, duality gap included)");
   f.add("table_bytes", r.table_bytes()).add("workspace_bytes", r.required_bytes());
   f.line("memory", "{table_bytes:bytes} tables, {workspace_bytes:bytes} workspace");
-  f.add("median_objective", median(frames, &recon::FrameInfo::objective), "objective", "{:6}" + of_frames);
-  add_gap(frames, f);
-  f.add("median_residual", median(frames, &recon::FrameInfo::residual), "residual", "{:4}" + of_frames);
-  add_fit(frames, f);
+  f.add("median_objective", median(solved, &recon::FrameInfo::objective), "objective", "{:6}" + of_frames);
+  add_gap(solved, f);
+  f.add("median_residual", median(solved, &recon::FrameInfo::residual), "residual", "{:4}" + of_frames);
+  add_fit(solved, f);
   f.add("health",
         Figures{{"converged", count(frames, recon::Health::converged)},
                 {"budget_used", count(frames, recon::Health::budget_used)},
                 {"invalid", count(frames, recon::Health::invalid)}},
         "health", "{health.converged} converged, {health.budget_used} used all their iterations, as planned");
+  add_passed_over(frames, f);
   add_quality(frames, f);
   add_written(o, frames, f);
   std::vector<Figures> per_frame;

@@ -20,8 +20,8 @@ struct FrameRecord {
   std::optional<PictureQuality> quality;  ///< with a truth only
 };
 
-/// Everything that `compueye reconstruct` tells of a run: of `frames`, whose records they are (at least one), with
-/// every rule that `reconstructor` resolved. `sigma`: what lambda is from, if not by hand.
+/// Everything that `compueye reconstruct` tells of a run: of `frames`, whose records they are (at least one that is not
+/// invalid), with every rule that `reconstructor` resolved. `sigma`: what lambda is from, if not by hand.
 [[nodiscard]] Figures figures_of(const ReconstructOptions& options, std::optional<double> sigma,
                                  const recon::Reconstructor& reconstructor, double setup_s,
                                  std::span<const FrameRecord> frames);

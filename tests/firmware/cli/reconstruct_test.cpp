@@ -263,6 +263,33 @@ TEST_CASE("pictures are written in the shape of the samples, in 8 bits as PNG") 
   CHECK(flat->values == framed->values);
 }
 
+TEST_CASE("a frame that cannot be solved is black and counted, and the others are what they are without it") {
+  const TemporaryFolder folder;
+  put_frames(folder, 4);
+  const std::string command = std::string(small_eye) + "--sigma 0.01 --iterations 20 --truth truth.npy --json ";
+  REQUIRE(run_compueye(command + "--out sound.npy", folder.path()).exit_code == 0);
+  const auto sound = pictures_in(folder.path() / "sound.npy");
+  auto samples = firmware::read_samples(folder.path() / "y.npy", 64).value();
+  const auto channels = static_cast<std::size_t>(samples.channels);
+  for (std::size_t m = 0; m < channels; ++m) samples.values[m] = std::nan("");
+  samples.values[2 * channels + 5] = 1e300;
+  put_npy(folder, "y.npy", {4, samples.channels}, samples.values);
+  for (const char* lambda : {"", "--lambda-from-samples"}) {
+    CAPTURE(lambda);
+    const auto json = json_from(command + "--out x.npy " + lambda, folder.path());
+    CHECK(json["health"]["invalid"] == 2);
+    CHECK(json["first_invalid"] == 0);
+    CHECK(json["per_frame"][2]["health"] == "invalid");
+    CHECK(json["median_objective"].get<double>() > 0.0);
+    CHECK(json["quality"]["nmse"].get<double>() < 1.0);  // a black picture's
+    const auto pictures = pictures_in(folder.path() / "x.npy");
+    for (std::size_t k = 0; k < pictures.size(); ++k) {
+      const bool black = k / 256 % 2 == 0;
+      if (black || *lambda == '\0') CHECK(pictures[k] == (black ? 0.0 : sound[k]));
+    }
+  }
+}
+
 TEST_CASE("one truth serves every frame") {
   const TemporaryFolder folder;
   put_frames(folder, 2);
