@@ -18,6 +18,8 @@ std::vector<HardRow> degenerate_rows() {
       {.hard = {.name = "N = 1", .reason = "A picture of one pixel: no differences, no wavelets, one cosine."}, .eye = one_pixel},
       {.hard = {.name = "M = N = 1", .reason = "One number from one number."}, .eye = one_of_each},
       {.hard = {.name = "M > N", .reason = "The factor is on the longer side.", .response = {tall, 0.05}}, .eye = eye_of_10_deg},
+      {.hard = {.name = "twin pixels", .reason = "Differences of neighbours are atoms of nothing but float32's rounding."}, .eye = twin_pixels},
+      {.hard = {.name = "near twin pixels", .reason = "Atoms of differences are 1e-4 of the others, and rounded as these are."}, .eye = near_twin_pixels},
       {.hard = {.name = "25 rows a pixel", .reason = "What is square in the rows is 625 times what is square in the pixels."}, .eye = tall_rows},
       {.hard = {.name = "25 rows a pixel of an eye", .reason = "The same rows again and again, each a little off."}, .eye = tall_eye},
       {.hard = {.name = "25 rows a pixel across 1e6", .reason = "Squares of the weak rows are below the rounding of the strong ones' squares.", .response = {row_spread, 1e6}}, .eye = tall_rows},

@@ -42,6 +42,17 @@ Response dense(int rows, int image_rows, int image_cols, std::vector<double> val
       .value();
 }
 
+Response pairs_of_pixels(double apart) {
+  Random random(13);
+  std::vector<double> values;
+  for (int k = 0; k < 25 * 32; ++k) {
+    const double value = random.uniform() < 0.5 ? random.uniform() : 0.0;
+    values.push_back(value);
+    values.push_back(value * (1.0 + apart * random.normal()));
+  }
+  return dense(25, 8, 8, std::move(values));
+}
+
 }  // namespace
 
 Response ordinary_eye() {
@@ -126,6 +137,12 @@ Response tall_eye() {
     values.insert(values.end(), row.begin(), row.end());
   }
   return dense(600, 4, 6, std::move(values));
+}
+Response twin_pixels() {
+  return pairs_of_pixels(1e-7);
+}
+Response near_twin_pixels() {
+  return pairs_of_pixels(1e-4);
 }
 Response zero_response() {
   return dense(4, 2, 3, std::vector<double>(24, 0.0));

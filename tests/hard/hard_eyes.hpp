@@ -27,6 +27,8 @@ namespace compueye::tests {
 [[nodiscard]] recon::Response one_of_each();       ///< 1 x 1 pixel, one row
 [[nodiscard]] recon::Response tall_rows();         ///< 600 dense random rows, 4 x 6 pixels
 [[nodiscard]] recon::Response tall_eye();          ///< the 25 rows of an eye 24 times over, 4 x 6 pixels
+[[nodiscard]] recon::Response twin_pixels();       ///< 25 random rows, every other pixel as its neighbour but for 1e-7
+[[nodiscard]] recon::Response near_twin_pixels();  ///< the same but for 1e-4
 [[nodiscard]] recon::Response zero_response();     ///< all zero
 [[nodiscard]] recon::Response sees_last_pixel();   ///< blind but for one pixel and one row
 

@@ -67,6 +67,11 @@ class TakenAtoms {
   double* amplitudes_;
 };
 
+constexpr std::size_t least_of(std::size_t a, std::size_t b, std::size_t c) noexcept {
+  const std::size_t least = a < b ? a : b;
+  return least < c ? least : c;
+}
+
 template <class T>
 class Omp {
  public:
@@ -74,9 +79,7 @@ class Omp {
       : problem_(problem),
         n_(problem.pixels()),
         rows_(problem.a.rows),
-        most_(static_cast<std::size_t>(problem.point.iterations) < rows_
-                  ? static_cast<std::size_t>(problem.point.iterations)
-                  : rows_),
+        most_(least_of(static_cast<std::size_t>(problem.point.iterations), rows_, n_)),
         samples_(problem, memory),
         taken_(most_, rows_, memory),
         elements_(memory.take<std::size_t>(most_)),

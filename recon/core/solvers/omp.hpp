@@ -10,7 +10,8 @@ namespace compueye::recon::core {
 /// compared with. Takes the element of the basis whose atom A psi_j points most along the residual, fits all taken ones
 /// by weighted least squares, and goes on until no atom's correlation with the residual exceeds lambda (the bound that
 /// holds at the l1 optimum; Cai & Wang 2011, section III), until the residual is at most problem.epsilon, or until
-/// problem.point.iterations or a.rows elements are taken. Identity or an orthonormal basis, no constraint.
+/// problem.point.iterations elements are taken, or as many as A has rows or columns. Identity or an orthonormal basis,
+/// no constraint.
 ///
 /// The objective is 1/2 ||W^(1/2)(A x - y)||^2 alone, iterations is the number of elements; converged when it stopped
 /// by lambda or epsilon. An element that depends on those taken, to a millionth of its norm, is passed over.
