@@ -101,6 +101,19 @@ TEST_CASE("odd sizes, NaN and extreme shapes stay inside the terminal") {
   }
 }
 
+TEST_CASE("a pixel that is no number is black in the terminal") {
+  const hal::VirtualClock clock;
+  const auto shown = [&](float level) {
+    const Pipe pipe;
+    TerminalSink sink(clock, small_terminal(pipe));
+    REQUIRE(sink.open({2, 2}).has_value());
+    REQUIRE(sink.write(frame_of({level, level, level, level}, {2, 2})).has_value());
+    return pipe.take();
+  };
+  CHECK(shown(std::nanf("")) == shown(0.0F));
+  CHECK(shown(1.0F) != shown(0.0F));
+}
+
 TEST_CASE("a terminal that cannot be written is an error") {
   const hal::VirtualClock clock;
   TerminalOptions options;

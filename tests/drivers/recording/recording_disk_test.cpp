@@ -50,7 +50,8 @@ namespace {
 class Eye final : public hal::SampleSource {
  public:
   explicit Eye(hal::Clock& clock) : description_(header_of(3, 12).source), clock_(clock) {}
-  bool silent = false;
+  bool silent = false, interrupted = false;
+  std::int32_t first_code = 1;
 
  private:
   [[nodiscard]] const hal::SourceDescription& do_describe() const noexcept override { return description_; }
@@ -63,7 +64,9 @@ class Eye final : public hal::SampleSource {
       clock_.sleep_until_ns(deadline_ns);
       return hal::timed_out();
     }
+    if (interrupted) return hal::fail(hal::ErrorCode::interrupted, "eye", "asked to stop");
     clock_.sleep_until_ns(clock_.now_ns() + 10'000'000);
+    codes_[0] = first_code;
     hal::SampleBlock block;
     block.codes = codes_;
     block.valid = valid_;
@@ -83,7 +86,7 @@ class Eye final : public hal::SampleSource {
   hal::SourceDescription description_;
   hal::Clock& clock_;
   hal::FrameAccount account_;
-  std::vector<std::int32_t> codes_{1, 2, 3};
+  std::vector<std::int32_t> codes_{0, 2, 3};
   std::vector<std::uint8_t> valid_{1, 1, 1};
 };
 
@@ -234,4 +237,39 @@ TEST_CASE("what a source says of itself it says through its recorder, too") {
   CHECK(recorder.source->recovering());
   CHECK(recorder.source->faults() == 3);
   CHECK(hal::text_of(recorder.source->counters()) == "silence 3, restart 2");
+}
+
+TEST_CASE("a frame that is not in the file is told by the next one that is, so that a torn recording tells it, too") {
+  Recorder recorder;
+  REQUIRE(recorder.source->start());
+  recorder.read(5);
+  recorder.eye.first_code = 1 << 20;  // more than its 12 bits
+  recorder.read(2);
+  recorder.eye.first_code = 1;
+  recorder.read(1);
+  CHECK(comes_true([&] { return recorder.source->recorded() == 6; }));
+  recorder.source->stop();
+  CHECK(recorder.source->unrecorded() == 2);
+  auto reader = RecordingReader::open(recorder.path());
+  REQUIRE(reader);
+  for (int frame = 0; frame < 5; ++frame) REQUIRE(reader->next());
+  CHECK(reader->unrecorded() == 0);
+  REQUIRE(reader->next());
+  CHECK(reader->unrecorded() == 2);
+  CHECK_FALSE(reader->end());
+}
+
+TEST_CASE("a recording whose reader was interrupted has been stopped, and its source has not failed") {
+  Recorder recorder;
+  REQUIRE(recorder.source->start());
+  recorder.read(5);
+  recorder.eye.interrupted = true;
+  recorder.read(1);
+  recorder.source->stop();
+  auto reader = RecordingReader::open(recorder.path());
+  REQUIRE(reader);
+  while (reader->next()) {
+  }
+  REQUIRE(reader->end());
+  CHECK(reader->end()->ending == Ending::stopped);
 }
