@@ -227,6 +227,9 @@ void check_whole(const Sweep& sweep) {
   if (sweep.levels.empty()) throw std::out_of_range("levels is empty");
   for (const MeasuredPoint& point : sweep.points) {
     if (point.iterations < 1) throw std::out_of_range(fmt::format("iterations is {}", point.iterations));
+    if (!(point.median_ms > 0.0 && point.p999_ms > 0.0)) {
+      throw std::out_of_range(fmt::format("median_ms is {} and p999_ms {}", point.median_ms, point.p999_ms));
+    }
     if (point.levels.size() != sweep.levels.size()) throw std::out_of_range("a point lacks a level");
   }
 }

@@ -171,12 +171,18 @@ Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
     if (points) {
       const PointChoice choice = choose_points(*points, board_.noise_sigma(), *options_.deadline_ms, period_ms());
       if (!choice.ladder.empty()) {
-        ladder_ = TRY(make_ladder(board_, living, *points, choice, board_.cache(), ask));
-        report_.ladder = LadderRun{std::move(*points), choice, {}, 0, 0};
-        choice_notes_.push_back(report_.ladder->sentence());
-        return {};
+        auto ladder = make_ladder(board_, living, *points, choice, board_.cache(), ask);
+        if (ladder) {
+          ladder_ = std::move(*ladder);
+          report_.ladder = LadderRun{std::move(*points), choice, {}, 0, 0};
+          choice_notes_.push_back(report_.ladder->sentence());
+          return {};
+        }
+        if (ladder.error().code == ErrorCode::interrupted) return tl::unexpected(std::move(ladder.error()));
+        why = "the one to choose cannot be run: " + ladder.error().text();
+      } else {
+        why = sentence(choice, *points);
       }
-      why = sentence(choice, *points);
     }
     choice_notes_.push_back(
         fmt::format("no stored points to choose from, so iterations are fitted by trial; `compueye pareto --board {}` "

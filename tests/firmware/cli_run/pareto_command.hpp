@@ -26,13 +26,19 @@ inline nlohmann::json pareto_json(const CopiedBoard& board, std::vector<std::str
   return json;
 }
 
-/// Says of the stored points what share of a processor their frames had: a test's own may be any.
-inline void set_processor_share(const CopiedBoard& board, double share) {
+/// What is stored says something else from now on.
+template <class Change>
+void change_points(const CopiedBoard& board, Change change) {
   const std::filesystem::path path = board.cache() / "accuracy-and-time.json";
   auto json = nlohmann::ordered_json::parse(bytes_of(path), nullptr, false);
-  REQUIRE(json.contains("processor_share"));
-  json["processor_share"] = share;
+  REQUIRE(json.contains("points"));
+  change(json);
   std::ofstream(path) << json;
+}
+
+/// Says of the stored points what share of a processor their frames had: a test's own may be any.
+inline void set_processor_share(const CopiedBoard& board, double share) {
+  change_points(board, [share](auto& json) { json["processor_share"] = share; });
 }
 
 /// The short form that the tests measure, without an end by time.

@@ -60,3 +60,28 @@ TEST_CASE("without stored points that fit a deadline is fitted by trial, and how
   CHECK(by_hand["deadline"]["iterations"] == 9);
   CHECK_FALSE(has_note(by_hand, "pareto"));
 }
+
+TEST_CASE("stored points that nothing can run cost a note, and the deadline is fitted by trial") {
+  const CopiedBoard board;
+  static_cast<void>(pareto_json(board, short_sweep()));
+  nlohmann::ordered_json measured;
+  change_points(board, [&](auto& json) { measured = json; });
+  for (const auto& [key, value] : {std::pair<std::string, Json>{"iterations", 2'000'000'000},
+                                   {"threads", 0},
+                                   {"basis", "tv"},  // which omp has not
+                                   {"p999_ms", -1.0}}) {
+    CAPTURE(key);
+    change_points(board, [&, key = key, value = value](auto& json) {
+      json["processor_share"] = 1.0;
+      for (auto& point : json["points"]) {
+        point[key] = value;
+        if (key == "basis") point["solver"] = "omp";
+      }
+    });
+    const Json json = board.run_json({"--deadline", "10000", "--frames", "2"});
+    CHECK(json["deadline"]["chosen_by"] == "trial");
+    CHECK(has_note(json, key == "p999_ms" ? key : "cannot be run"));
+    CHECK(json["frames"]["delivered"] == 2);
+    change_points(board, [&](auto& points) { points = measured; });
+  }
+}
