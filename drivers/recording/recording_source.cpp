@@ -133,6 +133,8 @@ void RecordingSource::do_stop() noexcept {
   waiting_->close();
   thread_.join();
   note(writer_->finish(ending_, clock_.now_ns() - started_ns_, source_.account(), unrecorded()));
+  refused_ += recorded_ - writer_->frames();
+  recorded_ = writer_->frames();
   bytes_ = writer_->bytes();
   writer_.reset();
 }

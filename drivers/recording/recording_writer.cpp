@@ -159,6 +159,20 @@ void RecordingWriter::discard() noexcept {
   if (regular_) ::unlink(path_.c_str());
 }
 
+/// Books are worth more than a frame, which is longer.
+void RecordingWriter::end_in_place_of_last_frame(BlockHead head) noexcept {
+  const std::uint64_t shorter = bytes_ - buffer_.size();
+  std::array<std::byte, end_block_bytes> bytes{};
+  --head.books.index;
+  ++head.books.unrecorded;
+  if (!regular_ || frames_ == 0 || !encode_end_block(head, bytes)) return;
+  if (::ftruncate(file_.get(), static_cast<off_t>(shorter)) != 0) return;
+  if (::lseek(file_.get(), static_cast<off_t>(shorter), SEEK_SET) < 0) return;
+  bytes_ = shorter;
+  --frames_;
+  static_cast<void>(put(bytes));
+}
+
 hal::Result<void> RecordingWriter::finish(Ending ending, std::int64_t at_ns, const hal::FrameAccount& account,
                                           std::uint64_t unrecorded) {
   BlockHead head;
@@ -167,17 +181,18 @@ hal::Result<void> RecordingWriter::finish(Ending ending, std::int64_t at_ns, con
   head.arrival_ns = std::clamp(at_ns, std::int64_t{0}, most_arrival_ns);
   head.books = books_of(account, frames_, unrecorded);
   head.books.estimated = account.estimated;
+  const bool failed_before = failed_;
   hal::Result<void> done;
   std::array<std::byte, end_block_bytes> bytes{};
   if (!encode_end_block(head, bytes)) {
     done = hal::fail(ErrorCode::out_of_range, path_,
                      "the source's account holds a counter that a recording has no room for");
-  } else if (!failed_) {
-    done = write(bytes);
-  } else if (regular_) {
-    // The disk was full for a frame; what says how many are missing is small, and somebody may have made room.
-    static_cast<void>(put(bytes));
+  } else if (!failed_ || regular_) {
+    // After a failure, too: what says how many frames are missing is small, and somebody may have made room.
+    done = put(bytes);
+    if (!done && done.error().code == ErrorCode::no_space) end_in_place_of_last_frame(head);
   }
+  if (failed_before) done = {};
   if (regular_ && ::fsync(file_.get()) != 0 && errno != EINVAL && errno != EROFS && done) {
     done = tl::unexpected(file_failure(errno, path_, "cannot be flushed to the disk"));
   }

@@ -25,8 +25,8 @@ namespace compueye::recording {
 /// end; the folder that it was made in is flushed at once.
 ///
 /// When the disk is full or a write fails, the file is cut back to its last whole block and append() says why; nothing
-/// more is then written but, if there is room for it, the end block with the frames that are missing. A pipe that
-/// takes nothing for `stall_limit` has failed.
+/// more is then written but the end block with the frames that are missing, on a full disk in the place of the last
+/// frame if there is no room for it. A pipe that takes nothing for `stall_limit` has failed.
 class RecordingWriter {
  public:
   static constexpr std::int64_t default_sync_interval_ns = 1'000'000'000;
@@ -54,7 +54,8 @@ class RecordingWriter {
   /// The file is of no use: closes it, and removes it if it was made here.
   void discard() noexcept;
 
-  /// Appends the end block, flushes to the disk and closes. Call it once, whatever append() returned.
+  /// Appends the end block, flushes to the disk and closes. Call it once, whatever append() returned; on a full disk
+  /// frames() may be one less after it.
   [[nodiscard]] hal::Result<void> finish(Ending ending, std::int64_t at_ns, const hal::FrameAccount& account,
                                          std::uint64_t unrecorded);
 
@@ -69,6 +70,7 @@ class RecordingWriter {
   RecordingWriter() = default;
   [[nodiscard]] hal::Result<void> write(std::span<const std::byte> bytes);
   [[nodiscard]] hal::Result<void> put(std::span<const std::byte> bytes);
+  void end_in_place_of_last_frame(BlockHead head) noexcept;
 
   OpenFile file_;
   std::string path_;

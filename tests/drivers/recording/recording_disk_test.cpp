@@ -218,6 +218,35 @@ TEST_CASE("a full disk is told while the recording runs, and the file's own book
   }
 }
 
+TEST_CASE("a recording ends with its books wherever the disk is full, if need be in the place of its last frame") {
+  const auto header_bytes = serialise(RecordingHeader{header_of(3, 12).source, 0, {}}).value().size();
+  const std::size_t frame_bytes = frame_block_bytes(3, 12);
+  for (std::size_t left = 0; left < frame_bytes; ++left) {
+    for (const int frames : {3, 5}) {  // as many as fit, and more
+      CAPTURE(left);
+      CAPTURE(frames);
+      Recorder recorder;
+      const FileSizeLimit limit(header_bytes + 3 * frame_bytes + left);
+      REQUIRE(recorder.source->start());
+      recorder.read(frames);
+      recorder.source->stop();
+      const std::uint64_t fit = left < end_block_bytes ? 2 : 3;
+      CHECK(recorder.source->recorded() == fit);
+      CHECK(recorder.source->recorded() + recorder.source->unrecorded() == static_cast<std::uint64_t>(frames));
+      CHECK(recorder.source->error().has_value() == (frames > 3 || fit < 3));
+      auto reader = RecordingReader::open(recorder.path());
+      REQUIRE(reader);
+      while (reader->next()) {
+      }
+      CHECK(reader->frames() == fit);
+      CHECK(reader->damage().torn_bytes == 0);
+      REQUIRE(reader->end());
+      CHECK(reader->unrecorded() == recorder.source->unrecorded());
+      CHECK(reader->account().produced == static_cast<std::uint64_t>(frames));
+    }
+  }
+}
+
 TEST_CASE("a pipe without a reader is refused and not waited for, and a link is never written through") {
   const TemporaryFolder folder;
   const auto pipe = folder / "pipe", link = folder / "link";
