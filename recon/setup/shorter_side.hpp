@@ -2,13 +2,14 @@
 
 #include <cstddef>
 
+#include "recon/core/operators/linear_operator.hpp"
 #include "recon/problem/response.hpp"
 
 namespace compueye::recon {
 
-/// So many more rows than pixels that what is cubic, or square in memory, is made on the side of the pixels.
+/// As core::is_tall() of the seeing rows.
 [[nodiscard]] constexpr bool is_tall(int rows, int cols) noexcept {
-  return rows / 2 >= cols;
+  return core::is_tall(static_cast<std::size_t>(rows), static_cast<std::size_t>(cols));
 }
 [[nodiscard]] inline bool is_tall(const Response& seeing) noexcept {
   return is_tall(seeing.rows(), seeing.cols());

@@ -10,10 +10,13 @@
 #include "recon/setup/shorter_side.hpp"
 #include "recon/setup/singular_modes.hpp"
 #include "recon/setup/tall_response.hpp"
+#include "recon/solver_list.hpp"
 #include "tests/hal/error_check.hpp"
 #include "tests/recon/dense_matrix.hpp"
 #include "tests/recon/random_problem.hpp"
 #include "tests/recon/reference/dense_algebra.hpp"
+#include "tests/recon/relative_difference.hpp"
+#include "tests/recon/solve_frame.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;
@@ -97,4 +100,34 @@ TEST_CASE("modes of a tall response are orthonormal, and nought where its pixels
     CHECK(std::abs(static_cast<double>(modes[k]) - square) <= 1e-6 * square);
   }
   CHECK(modes[20] < 1e-12F * modes[0]);  // bounds what is left out
+}
+
+TEST_CASE("missing channels of a tall response, more than it has pixels, are as if their rows were not there") {
+  Random random(10);
+  const recon::Response a = random_response(random, 240, Picture{4, 5}, 0.6);
+  const auto y = to_float(random_vector(random, 240, 0.0, 3.0));
+  std::vector<float> weights(240, 1.0F), left;
+  std::vector<std::int32_t> rows;
+  for (std::int32_t m = 0; m < 240; ++m) {
+    const auto at = static_cast<std::size_t>(m);
+    weights[at] = m % 3 == 0 ? 0.0F : 1.0F;
+    if (m % 3 != 0) rows.push_back(m);
+    if (m % 3 != 0) left.push_back(y[at]);
+  }
+  for (const std::string_view solver : {"admm", "adm", "tikhonov", "tsvd", "pdhg"}) {
+    CAPTURE(solver);
+    recon::Objective objective;
+    objective.lambda = 0.5;
+    recon::Plan plan;
+    plan.solver = recon::solver_named(solver);
+    plan.precision = recon::Precision::f64;
+    plan.iterations = 3000;
+    plan.rank = solver == "tsvd" ? 20 : 0;
+    plan.max_reweighted = 100;
+    const auto whole = recon::Reconstructor::create(a, objective, plan).value();
+    const auto without = recon::Reconstructor::create(a.select_rows(rows), objective, plan).value();
+    const SolvedFrame missing = solve_frame(whole, y, weights), expected = solve_frame(without, left);
+    CHECK(missing.info.channels_reweighted == 80);
+    CHECK(relative_difference(missing.x, expected.x) < 1e-5);
+  }
 }

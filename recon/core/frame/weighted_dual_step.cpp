@@ -19,7 +19,7 @@ WeightedDualStep<T>::WeightedDualStep(const FrameProblem<T>& problem, const Defl
       samples_(problem, workspace),
       residual_(workspace.take<T>(problem.a.rows)),
       step_(workspace.take<T>(problem.a.rows)),
-      reweighted_(problem.max_reweighted, workspace),
+      reweighted_(problem.max_reweighted, is_tall(problem.a) ? step.parts[0].rank : 0, workspace),
       scratch_(workspace.take<T>(step.scratch_size())) {}
 
 template <class T>
@@ -30,11 +30,16 @@ bool WeightedDualStep<T>::begin(const float* y, const float* weights) noexcept {
 template <class T>
 bool WeightedDualStep<T>::factor_substitution() noexcept {
   const std::size_t n = reweighted_.count(), *rows = reweighted_.rows();
-  restrict_to(*deflated_, rows, n, reweighted_.matrix(), scratch_);
+  if (!reweighted_.by_modes()) restrict_to(*deflated_, rows, n, reweighted_.matrix(), scratch_);
   for (std::size_t s = 0; s < n; ++s) {
-    if (is_missing(rows[s])) continue;
     const double weight = static_cast<double>(samples_.weights()[rows[s]]);
-    reweighted_.matrix()[s * n + s] += weight / (1.0 - weight);
+    const double added = is_missing(rows[s]) ? 0.0 : weight / (1.0 - weight);
+    if (reweighted_.by_modes()) {
+      reweighted_.diagonal()[s] = static_cast<double>(deflated_->parts[0].rest[0]) + added;
+      read_modes(deflated_->parts[0], rows[s], reweighted_.modes(s));
+    } else if (added > 0.0) {
+      reweighted_.matrix()[s * n + s] += added;
+    }
   }
   return reweighted_.factor();
 }

@@ -20,7 +20,7 @@ WeightedStep<T>::WeightedStep(const FactoredProblem<T>& problem, Workspace& work
       correction_(workspace.take<T>(problem.a.rows)),
       pull_(workspace.take<T>(problem.pixels())),
       on_pixels_(problem, workspace),
-      reweighted_(tall_ ? 0 : problem.max_reweighted, workspace),
+      reweighted_(tall_ ? 0 : problem.max_reweighted, 0, workspace),
       inverse_rows_(workspace.take<T>(tall_ ? 0 : problem.max_reweighted * problem.a.rows)),
       inverse_scratch_(workspace.take<T>(problem.inverse.scratch_size())) {
   if (tall_ || problem.metric.is_identity()) return;

@@ -46,6 +46,15 @@ struct LinearOperator {
   }
 };
 
+/// So many more rows than pixels that what is cubic, or square in memory, is made on the side of the pixels.
+[[nodiscard]] constexpr bool is_tall(std::size_t rows, std::size_t cols) noexcept {
+  return rows / 2 >= cols;
+}
+template <class T>
+[[nodiscard]] constexpr bool is_tall(const LinearOperator<T>& a) noexcept {
+  return is_tall(a.rows, a.cols);
+}
+
 /// Bytes of tables that one application reads; the same for A and A'.
 std::size_t bytes(const LinearOperator<float>& a) noexcept;
 std::size_t bytes(const LinearOperator<double>& a) noexcept;

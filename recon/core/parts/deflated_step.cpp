@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "recon/core/parts/multiversion.hpp"
+#include "recon/core/parts/square_root.hpp"
 
 namespace compueye::recon::core {
 namespace {
@@ -166,7 +167,25 @@ COMPUEYE_INLINE void restrict_of(const DeflatedStep<T>& f, const std::size_t* in
   }
 }
 
+template <class T>
+void read_modes_of(const Part<T>& part, std::size_t row, double* out) noexcept {
+  const std::uint16_t* stored = part.vectors + row * part.columns();
+  for (std::size_t k = 0; k < part.rank; ++k) {
+    T value = widened<T>(stored[k]);
+    if (k < part.refined) value += widened<T>(stored[part.rank + k]);
+    const double drop = -static_cast<double>(part.gains[k]);
+    out[k] = drop > 0.0 ? square_root(drop) * static_cast<double>(value) : 0.0;
+  }
+}
+
 }  // namespace
+
+void read_modes(const DeflatedStep<float>::Part& part, std::size_t row, double* out) noexcept {
+  read_modes_of<float>(part, row, out);
+}
+void read_modes(const DeflatedStep<double>::Part& part, std::size_t row, double* out) noexcept {
+  read_modes_of<double>(part, row, out);
+}
 
 void apply(const DeflatedStep<float>& f, std::size_t level, const float* x, float* y, float* scratch) noexcept {
   apply_of(f, level, x, y, scratch);

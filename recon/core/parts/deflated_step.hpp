@@ -60,4 +60,8 @@ void restrict_to(const DeflatedStep<float>& f, const std::size_t* index, std::si
 void restrict_to(const DeflatedStep<double>& f, const std::size_t* index, std::size_t count, double* out,
                  double* scratch) noexcept;
 
+/// sqrt(f_0 - f_k) U of a row of the only class, at the first level: rank values.
+void read_modes(const DeflatedStep<float>::Part& part, std::size_t row, double* out) noexcept;
+void read_modes(const DeflatedStep<double>::Part& part, std::size_t row, double* out) noexcept;
+
 }  // namespace compueye::recon::core

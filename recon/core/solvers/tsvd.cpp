@@ -1,7 +1,7 @@
 #include "recon/core/solvers/tsvd.hpp"
 
 #include "recon/core/frame/frame_loop.hpp"
-#include "recon/core/parts/cholesky.hpp"
+#include "recon/core/frame/reweighted_channels.hpp"
 #include "recon/core/parts/proximal.hpp"
 #include "recon/core/parts/vector_sums.hpp"
 
@@ -24,12 +24,10 @@ class Tsvd {
         modes_(memory.take<T>(problem.modes.rank)),
         wanted_(memory.take<T>(problem.modes.rank)),
         picture_(memory.take<T>(n_)),
-        index_(memory.take<std::size_t>(problem.max_reweighted)),
-        system_(memory.take<double>(problem.max_reweighted * problem.max_reweighted)),
-        unknown_(memory.take<double>(problem.max_reweighted)) {}
+        reweighted_(problem.max_reweighted, is_tall(problem.a) ? problem.modes.rank : 0, memory) {}
 
   bool begin(const float* y, const float* weights) noexcept {
-    return samples_.gather(y, weights) && samples_.channels_reweighted() <= problem_.max_reweighted && fill();
+    return samples_.gather(y, weights) && reweighted_.list(samples_) && fill();
   }
 
   void iterate(int) noexcept {
@@ -78,26 +76,35 @@ class Tsvd {
 
   /// filled_ = the samples, with what the fit says in place of what is missing. False when numbers run out of range.
   bool fill() noexcept {
-    std::size_t reweighted = 0;
-    for (std::size_t i = 0; i < rows_; ++i) {
-      filled_[i] = samples_.weights()[i] * samples_.values()[i];
-      if (samples_.weights()[i] != T(1)) index_[reweighted++] = i;
-    }
+    for (std::size_t i = 0; i < rows_; ++i) filled_[i] = samples_.weights()[i] * samples_.values()[i];
+    const std::size_t reweighted = reweighted_.count();
     if (reweighted == 0) return true;
     project(filled_);
     for (std::size_t s = 0; s < reweighted; ++s) {
-      const T* at = row(index_[s]);
-      for (std::size_t t = 0; t <= s; ++t) {
-        system_[s * reweighted + t] = -static_cast<double>(dot(at, row(index_[t]), problem_.modes.rank));
-      }
-      const double lacks = 1.0 - static_cast<double>(samples_.weights()[index_[s]]);
-      system_[s * reweighted + s] += (1.0 + open_direction) / lacks;
-      unknown_[s] = static_cast<double>(dot(at, modes_, problem_.modes.rank));
+      const T* at = row(reweighted_.rows()[s]);
+      const double lacks = 1.0 - static_cast<double>(samples_.weights()[reweighted_.rows()[s]]);
+      set_up(s, at, (1.0 + open_direction) / lacks);
+      reweighted_.values()[s] = static_cast<double>(dot(at, modes_, problem_.modes.rank));
     }
-    if (!cholesky_factor(system_, reweighted)) return false;
-    cholesky_solve(system_, reweighted, unknown_);
-    for (std::size_t s = 0; s < reweighted; ++s) filled_[index_[s]] += static_cast<T>(unknown_[s]);
+    if (!reweighted_.factor()) return false;
+    reweighted_.solve();
+    for (std::size_t s = 0; s < reweighted; ++s) {
+      filled_[reweighted_.rows()[s]] += static_cast<T>(reweighted_.values()[s]);
+    }
     return true;
+  }
+
+  /// D^-1 - P at a reweighted channel, whose row of U is `at`.
+  void set_up(std::size_t s, const T* at, double diagonal) noexcept {
+    const std::size_t rank = problem_.modes.rank;
+    if (reweighted_.by_modes()) {
+      reweighted_.diagonal()[s] = diagonal;
+      for (std::size_t k = 0; k < rank; ++k) reweighted_.modes(s)[k] = static_cast<double>(at[k]);
+      return;
+    }
+    double* line = reweighted_.matrix() + s * reweighted_.count();
+    for (std::size_t t = 0; t <= s; ++t) line[t] = -static_cast<double>(dot(at, row(reweighted_.rows()[t]), rank));
+    line[s] += diagonal;
   }
 
   const TsvdProblem<T>& problem_;
@@ -108,9 +115,7 @@ class Tsvd {
   T* modes_;
   T* wanted_;  // modes_ of the samples
   T* picture_;
-  std::size_t* index_;
-  double* system_;
-  double* unknown_;
+  ReweightedChannels<T> reweighted_;
 };
 
 }  // namespace
