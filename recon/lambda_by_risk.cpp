@@ -136,7 +136,8 @@ class RiskSearch {
 
   Result<LambdaTrial> trial(const Objective& objective, double k) {
     const Progress progress = tried_.empty() ? progress_ : progress_.unestimated();
-    auto solver = TRY(Reconstructor::create(response_, objective, plan_, found_.factor, progress));
+    auto stored = found_.factor ? factor_that_fits(*found_.factor, response_, objective, plan_) : std::nullopt;
+    auto solver = TRY(Reconstructor::create(response_, objective, plan_, std::move(stored), progress));
     if (!found_.factor && reusable_factor() && solver.factor().order > 0) found_.factor = solver.factor();
     const Explained seen = TRY(explained(solver, frame_.y));
     const Explained moved = TRY(explained(solver, probed_));

@@ -28,6 +28,11 @@ using hal::fail;
 template <class T>
 using ProblemIn = std::shared_ptr<core::FrameProblem<T>>;
 
+bool is_same(const Factor& stored, const Factor& wanted) noexcept {
+  return wanted.order > 0 && stored.metric == wanted.metric && stored.rho == wanted.rho &&
+         stored.order == wanted.order && stored.rank == wanted.rank;
+}
+
 }  // namespace
 
 struct Reconstructor::Tables {
@@ -67,9 +72,7 @@ struct Reconstructor::Tables {
   }
 
   [[nodiscard]] hal::Result<void> check_stored(const Factor& stored) const {
-    const bool fits = factor.order > 0 && stored.metric == factor.metric && stored.rho == factor.rho &&
-                      stored.order == factor.order && stored.rank == factor.rank;
-    return fits ? hal::Result<void>{} : stale(stored, plan, static_cast<int>(seeing.size()));
+    return is_same(stored, factor) ? hal::Result<void>{} : stale(stored, plan, static_cast<int>(seeing.size()));
   }
 };
 
@@ -145,6 +148,13 @@ Factor Reconstructor::wanted_factor(const Response& response, const Objective& o
   const bool kept = uses_factor(plan.solver) && !is_tall(order, response.cols());
   const UnitChoice unit{response_exponent(response.squared_norm(), response.cols()), 0};
   return {unit.squared(resolve_rho(response, objective, plan)), kept ? order : 0, {}, metric, 0};
+}
+
+std::optional<Factor> factor_that_fits(const Factor& factor, const Response& response, const Objective& objective,
+                                       const Plan& plan) {
+  if (plan.precision != Precision::f32 || factor.values.empty()) return std::nullopt;
+  if (!is_same(factor, Reconstructor::wanted_factor(response, objective, plan))) return std::nullopt;
+  return factor;
 }
 
 int Reconstructor::channels() const noexcept {

@@ -100,4 +100,8 @@ class Reconstructor {
   std::unique_ptr<Tables> tables_;
 };
 
+/// `factor` where Reconstructor::create() takes it for this problem in single precision, else nothing.
+[[nodiscard]] std::optional<Factor> factor_that_fits(const Factor& factor, const Response& response,
+                                                     const Objective& objective, const Plan& plan);
+
 }  // namespace compueye::recon

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,11 +27,20 @@ struct LivingResponse {
 /// Errors: those of nominal_response(); interrupted.
 [[nodiscard]] hal::Result<LivingResponse> living_response(const Board& board, const recon::Progress& progress);
 
+enum class LambdaOrigin : std::uint8_t {
+  hand,      ///< the board's or the command line's
+  rule,      ///< recon/lambda_rule.hpp
+  samples,   ///< recon/lambda_by_risk.hpp
+  recording  ///< what the run chose that made it
+};
+[[nodiscard]] std::string_view name(LambdaOrigin origin) noexcept;
+
 /// Where lambda came from.
 struct LambdaChoice {
   double value = 0.0;
-  bool by_rule = false;
-  double sigma = 0.0;  ///< the rule's noise; meaningful when by_rule
+  LambdaOrigin origin = LambdaOrigin::hand;
+  double sigma = 0.0;  ///< noise of a sample, and
+  double rule = 0.0;   ///< the rule's lambda for it; both meaningful unless by hand
 };
 
 /// `by_hand` where there is one, else by the rule for this solver and basis from the noise `sigma` of one sample.
@@ -62,6 +73,21 @@ class ReadyEye {
   [[nodiscard]] FactorOrigin factor_origin() const noexcept { return factor_origin_; }
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
+  /// Another lambda, on the response that the eye was made of. Errors: those of Reconstructor::create(), and the eye
+  /// stays as it was.
+  [[nodiscard]] hal::Result<void> set_lambda(const LivingResponse& living, double value, LambdaOrigin origin,
+                                             const recon::Progress& progress);
+  /// lambda from the samples of one frame (recon/lambda_by_risk.hpp), y and weights as for Reconstructor::solve(),
+  /// where it is by rule and weighs an l1 term. Returns why the rule's stays, empty where it does not. Errors:
+  /// interrupted.
+  [[nodiscard]] hal::Result<std::string> choose_lambda_by(std::span<const float> y, std::span<const float> weights,
+                                                          const LivingResponse& living,
+                                                          const recon::Progress& progress);
+  /// Whether choose_lambda_by() has anything to choose.
+  [[nodiscard]] bool takes_lambda_from_samples() const noexcept;
+  /// Whether a frame tells of more than noise: its light, which is never negative, adds up to three standard errors.
+  [[nodiscard]] bool stands_above_noise(std::span<const float> y, std::span<const float> weights) const noexcept;
+
   /// Gives back memory that frames do not need, see Reconstructor::forget_modes().
   void forget_modes() noexcept { reconstructor_->forget_modes(); }
   /// Another number of iterations a frame.
@@ -70,6 +96,7 @@ class ReadyEye {
  private:
   ReadyEye() = default;
 
+  recon::Plan plan_;  // as asked for, its rules not resolved
   std::unique_ptr<recon::Reconstructor> reconstructor_;
   std::vector<std::uint8_t> sees_;
   LambdaChoice lambda_;

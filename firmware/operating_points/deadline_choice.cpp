@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "firmware/text/number_text.hpp"
@@ -66,6 +67,36 @@ hal::Result<hal::SampleBlock> first_block(const Board& board, hal::SampleSource&
       return hal::fail(ErrorCode::timeout, source.describe().serial, "no frame came; is the eye powered?");
     }
   }
+}
+
+hal::Result<TrialFrame> search_frame(const Board& board, hal::SampleSource& source, hal::Clock& clock,
+                                     const std::atomic<bool>& stop, const TrialWanted& wanted, Correction& correction) {
+  constexpr std::int64_t enough_ns = 2'000'000'000;
+  const auto channels = static_cast<std::size_t>(source.describe().channels);
+  const int most = wanted ? most_trial_frames : 1;
+  TrialFrame frame{std::vector<float>(channels), std::vector<float>(channels), 0, false}, sound;
+  std::optional<CorrectionReport> fault;
+  std::int64_t began_ns = 0;
+  while (frame.taken < most && (frame.taken == 0 || clock.now_ns() - began_ns < enough_ns)) {
+    const auto block = first_block(board, source, clock, stop);
+    // What came before is something to go on with.
+    if (!block && (frame.taken == 0 || block.error().code == ErrorCode::interrupted)) {
+      return tl::unexpected(block.error());
+    }
+    if (!block) break;
+    if (frame.taken++ == 0) began_ns = clock.now_ns();
+    const CorrectionReport report = correction.apply(*block, frame.y, frame.weights);
+    if (!report.usable) {
+      if (!fault) fault = report;
+      continue;
+    }
+    frame.wanted = !wanted || wanted(frame);
+    if (frame.wanted) return frame;
+    sound = frame;
+  }
+  if (sound.y.empty()) TRY(unusable(board, correction, *fault));
+  sound.taken = frame.taken;
+  return sound;
 }
 
 }  // namespace
@@ -133,20 +164,13 @@ std::string DeadlineChoice::sentence() const {
 }
 
 hal::Result<TrialFrame> take_trial_frame(const Board& board, const CorrectionSettings& settings,
-                                         hal::SampleSource& source, hal::Clock& clock, const std::atomic<bool>& stop) {
+                                         hal::SampleSource& source, hal::Clock& clock, const std::atomic<bool>& stop,
+                                         const TrialWanted& wanted) {
   Correction correction = TRY(Correction::create(settings, source.describe()));
   TRY(source.start());
-  const auto block = first_block(board, source, clock, stop);
-  if (!block) {
-    source.stop();
-    return tl::unexpected(block.error());
-  }
-  const auto channels = static_cast<std::size_t>(source.describe().channels);
-  TrialFrame frame{std::vector<float>(channels), std::vector<float>(channels)};
-  const CorrectionReport report = correction.apply(*block, frame.y, frame.weights);
+  auto frame = search_frame(board, source, clock, stop, wanted, correction);
   source.stop();
-  if (report.usable) return frame;
-  return unusable(board, correction, report).map([] { return TrialFrame{}; });
+  return frame;
 }
 
 hal::Result<DeadlineChoice> fit_deadline(double deadline_ms, double period_ms, const TrialFrame& frame, ReadyEye& eye,

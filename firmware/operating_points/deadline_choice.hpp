@@ -66,14 +66,20 @@ using TimedSolve = std::function<hal::Result<std::int64_t>(int iterations)>;
 struct TrialFrame {
   std::vector<float> y;
   std::vector<float> weights;
+  int taken = 1;       ///< frames that were taken for it, itself the last of them where it is `wanted`
+  bool wanted = true;  ///< it is what was looked for
 };
+using TrialWanted = std::function<bool(const TrialFrame&)>;
+/// So many frames, of two seconds, may go by in search of one that is wanted.
+inline constexpr int most_trial_frames = 16;
 
-/// Starts the source, takes one frame, stops it. A frame that the correction would drop is an error (mismatch) that
-/// says what is wrong with it: a simulated eye shows the same scene for ever, so the run would deliver nothing. Error
-/// interrupted when `stop` becomes true before the frame has come.
+/// Starts the source, takes one frame, stops it. With `wanted` it goes on until one is that, or returns the last sound
+/// one. Where the correction would drop all that came, that is an error (mismatch) that says what is wrong with the
+/// first: a simulated eye shows the same scene for ever, so the run would deliver nothing. Error interrupted when
+/// `stop` becomes true before a frame has come.
 [[nodiscard]] hal::Result<TrialFrame> take_trial_frame(const Board& board, const CorrectionSettings& settings,
                                                        hal::SampleSource& source, hal::Clock& clock,
-                                                       const std::atomic<bool>& stop);
+                                                       const std::atomic<bool>& stop, const TrialWanted& wanted = {});
 
 /// Times a few real solves of the trial frame and leaves `eye` with as many iterations as the deadline allows.
 [[nodiscard]] hal::Result<DeadlineChoice> fit_deadline(double deadline_ms, double period_ms, const TrialFrame& frame,

@@ -99,7 +99,7 @@ Result<recon::Factor> add_rules(const Board& board, const recon::Response& a, Fi
   const double rho = recon::resolve_rho(a, objective, board.plan);
   const auto whose = [](bool by_the_rule) { return std::string(by_the_rule ? " (by rule)" : " (the board's)"); };
   figures.add("lambda_by_rule", by_rule, "lambda by rule", "{:5}");
-  figures.add("lambda", lambda.value, "lambda in use", "{:5}" + whose(lambda.by_rule));
+  figures.add("lambda", lambda.value, "lambda in use", "{:5}" + whose(lambda.origin == LambdaOrigin::rule));
   figures.add("rho", rho, "rho in use", "{:5}" + whose(!(board.plan.rho > 0.0)));
   return recon::Reconstructor::wanted_factor(a, objective, board.plan);
 }

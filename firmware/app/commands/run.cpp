@@ -70,7 +70,7 @@ class BoardRun {
   Result<void> run() {
     TRY(prepare());
     TRY(make_eye());
-    TRY(fit());
+    TRY(make_ready());
     TRY(run_pipeline());
     // A sheet that cannot be written must not cost the summary of the run.
     if (auto compared = compare(); !compared && !report_.summary.error) {
@@ -87,7 +87,10 @@ class BoardRun {
   [[nodiscard]] ReadyEye& eye() { return ladder_.eyes.front(); }
   [[nodiscard]] const ReadyEye& eye() const { return ladder_.eyes.front(); }
   [[nodiscard]] double period_ms() const { return 1e3 / board_.source.frame_rate_hz; }
+  Result<void> make_ready();
   Result<void> fit();
+  Result<void> choose_lambda(const TrialFrame& frame);
+  [[nodiscard]] bool chooses_lambda() const;
   Result<void> run_pipeline();
   Result<void> run_with(FrameSolver& solver, const RunSinks& sinks, FrameObserver& observer);
   [[nodiscard]] std::function<void()> how_far(TerminalSink* screen);
@@ -113,6 +116,7 @@ class BoardRun {
   std::optional<PictureFolder> folder_;
   sim::Scene scene_;
   hal::Image truth_;
+  std::optional<LivingResponse> living_;   // until lambda is chosen
   PointLadder ladder_;                     // its first eye is the board's, its rungs are empty without stored points
   std::vector<std::string> choice_notes_;  // said when the set-up no longer redraws its line
   std::optional<RunSource> source_;
@@ -153,16 +157,15 @@ Result<void> BoardRun::make_eye() {
   for (const std::string& sentence : choice_notes_) note(sentence);
   for (ReadyEye& one : ladder_.eyes) {
     for (const std::string& sentence : one.notes()) note(sentence);
-    one.forget_modes();
   }
   report_.setup_s = static_cast<double>(session_.clock().now_ns() - begin_ns) / 1e9;
-  report_.setup_peak_bytes = peak_memory_bytes();
   return {};
 }
 
 /// From stored points where a deadline asks for them; otherwise, or when there are none that fit, what the board says.
 Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
-  const LivingResponse living = TRY(living_response(board_, ask));
+  living_ = TRY(living_response(board_, ask));
+  const LivingResponse& living = *living_;
   // Iterations, threads or lambda by hand say what to run; nothing that was measured goes with them.
   const auto given = [this](std::string_view option) { return options_.overrides.has(option); };
   if (options_.deadline_ms && !given("--iterations") && !given("--threads") && !given("--lambda")) {
@@ -193,17 +196,58 @@ Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
   return {};
 }
 
+Result<void> BoardRun::make_ready() {
+  TRY(fit());
+  living_.reset();
+  for (ReadyEye& one : ladder_.eyes) one.forget_modes();
+  report_.setup_peak_bytes = peak_memory_bytes();
+  if (session_.stop_requested()) {
+    return hal::fail(ErrorCode::interrupted, board_.name, "stopped before the first frame");
+  }
+  return source_->begin_recording(options_, board_, scene_, eye(), session_.clock());
+}
+
 Result<void> BoardRun::fit() {
-  // Whatever a recording's first frame is like, others may be better.
-  if (options_.replays() && !(options_.deadline_ms && ladder_.rungs.empty())) return {};
-  const auto frame = TRY(take_trial_frame(board_, correction_settings(board_, eye().sees()), source_->unrecorded(),
-                                          session_.clock(), session_.stop_requested()));
-  if (options_.deadline_ms && ladder_.rungs.empty()) {
-    report_.deadline = TRY(fit_deadline(*options_.deadline_ms, period_ms(), frame, eye(), session_.clock()));
+  if (const auto recorded = source_->recorded_lambda(eye());
+      recorded && *recorded != eye().lambda().value && !options_.lambda_from_samples && ladder_.rungs.empty()) {
+    TRY(eye().set_lambda(*living_, *recorded, LambdaOrigin::recording, session_.progress()));
+  }
+  const bool fits_deadline = options_.deadline_ms && ladder_.rungs.empty(), chooses = chooses_lambda();
+  if (options_.replays() && !fits_deadline && !chooses) return {};
+  const auto tells = [this](const TrialFrame& one) { return eye().stands_above_noise(one.y, one.weights); };
+  const auto frame = take_trial_frame(board_, correction_settings(board_, eye().sees()), source_->unrecorded(),
+                                      session_.clock(), session_.stop_requested(), chooses ? tells : TrialWanted());
+  // Whatever a recording's first frames are like, others may be better.
+  if (!frame && options_.replays() && !fits_deadline && frame.error().code != ErrorCode::interrupted) {
+    note("lambda stays the rule's: " + frame.error().text());
+    return {};
+  }
+  if (!frame) return tl::unexpected(frame.error());
+  if (chooses) TRY(choose_lambda(*frame));
+  if (fits_deadline) {
+    report_.deadline = TRY(fit_deadline(*options_.deadline_ms, period_ms(), *frame, eye(), session_.clock()));
     note(report_.deadline->sentence());
   }
-  if (!session_.stop_requested()) return {};
-  return hal::fail(ErrorCode::interrupted, board_.name, "stopped before the first frame");
+  return {};
+}
+
+/// Stored points were measured with the rule's lambda.
+bool BoardRun::chooses_lambda() const {
+  return options_.lambda_from_samples.value_or(false) && ladder_.rungs.empty() && eye().takes_lambda_from_samples();
+}
+
+Result<void> BoardRun::choose_lambda(const TrialFrame& frame) {
+  const std::int64_t begin_ns = session_.clock().now_ns();
+  std::string why;
+  if (frame.wanted) {
+    why = TRY(eye().choose_lambda_by(frame.y, frame.weights, *living_, session_.progress()));
+    session_.end_progress();
+  } else {
+    why = fmt::format("no frame stands above the noise, of {} looked at", frame.taken);
+  }
+  report_.setup_s += static_cast<double>(session_.clock().now_ns() - begin_ns) / 1e9;
+  if (!why.empty()) note("lambda stays the rule's: " + why);
+  return {};
 }
 
 PipelineSettings BoardRun::pipeline_settings() const {

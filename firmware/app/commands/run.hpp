@@ -27,7 +27,8 @@ struct RunOptions {
   std::string replay_pace;  ///< fast or recorded; empty: fast
   std::string record;       ///< where the frames go besides; empty: nowhere
   bool stop_if_unrecorded = false;
-  Overrides overrides;  ///< iterations, threads, lambda, sigma, distance
+  std::optional<bool> lambda_from_samples;  ///< false: by rule; absent: as recorded, else by rule
+  Overrides overrides;                      ///< iterations, threads, lambda, sigma, distance
   std::string sheet;
   std::string report;
   std::string table;         ///< header, row or both; empty: no table

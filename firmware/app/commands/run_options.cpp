@@ -70,6 +70,17 @@ void add_solver_options(OptionList& options, RunOptions& o) {
               "timing real solves first. No point is chosen that is slower than frames come, or no better than the "
               "conventional eye. Late pictures are published and counted");
   options.settings("run", o.overrides);
+  options
+      .flag(
+          "--lambda-from-samples", o.lambda_from_samples,
+          "choose lambda by the first frame that stands above the noise, and keep it; for noisy samples. Where frames "
+          "do not tell, the rule's stays, and that is said")
+      .excludes("--lambda");
+  options
+      .flag("--lambda-by-rule", o.lambda_from_samples,
+            "lambda from the noise alone (default; of a replay the one that was recorded)", false)
+      .excludes("--lambda")
+      .excludes("--lambda-from-samples");
   options.at("--sigma").excludes("--lambda");
 }
 

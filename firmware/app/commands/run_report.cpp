@@ -39,10 +39,18 @@ Figures eye_figures(const Board& board, const ReadyEye& eye, const std::string& 
 Figures point_figures(const ReadyEye& eye) {
   const recon::OperatingPoint point = eye.reconstructor().operating_point();
   const LambdaChoice& lambda = eye.lambda();
-  return {{"solver", name(point.solver)},         {"basis", name(point.basis)},
-          {"operator", name(point.op)},           {"precision", name(point.precision)},
-          {"iterations", point.iterations},       {"lambda", lambda.value},
-          {"lambda_by_rule", lambda.by_rule},     {"sigma", lambda.by_rule ? Value(lambda.sigma) : Value()},
+  const bool by_hand = lambda.origin == LambdaOrigin::hand;
+  return {{"solver", name(point.solver)},
+          {"basis", name(point.basis)},
+          {"operator", name(point.op)},
+          {"precision", name(point.precision)},
+          {"iterations", point.iterations},
+          {"lambda", lambda.value},
+          {"lambda_by", name(lambda.origin)},
+          {"lambda_by_rule", lambda.origin == LambdaOrigin::rule},
+          {"rule_lambda", by_hand ? Value() : Value(lambda.rule)},
+          {"lambda_over_rule", by_hand ? Value() : Value(lambda.value / lambda.rule)},
+          {"sigma", by_hand ? Value() : Value(lambda.sigma)},
           {"rho", eye.reconstructor().plan().rho}};
 }
 
@@ -149,14 +157,28 @@ Figures stage_figures(const StageAccounts& accounts) {
           {"publish", figures_of(accounts.publish)}};
 }
 
-void tell_eye(Figures& f, bool lambda_by_rule) {
+std::string_view lambda_sentence(LambdaOrigin origin) {
+  switch (origin) {
+    case LambdaOrigin::hand:
+      return " as given";
+    case LambdaOrigin::rule:
+      return " by rule from sigma {operating_point.sigma:3}";
+    case LambdaOrigin::samples:
+      return " from the samples, {operating_point.lambda_over_rule:3} times the rule's";
+    case LambdaOrigin::recording:
+      return " as recorded, {operating_point.lambda_over_rule:3} times the rule's";
+  }
+  return {};
+}
+
+void tell_eye(Figures& f, LambdaOrigin lambda) {
   f.tell(
       "{eye.board} ({eye.source}): {eye.ommatidia} ommatidia, {eye.blind_ommatidia} blind"
       "[, {eye.dead_ommatidia} dead]; {eye.image_rows} x {eye.image_columns} pixels; scene {scene} at {distance_mm} "
       "mm, seed {seed}\n"
       "{operating_point.solver}, {operating_point.basis}, {operating_point.iterations} iterations, lambda "
       "{operating_point.lambda:3}");
-  f.tell(lambda_by_rule ? " by rule from sigma {operating_point.sigma:3}" : " as given");
+  f.tell(std::string(lambda_sentence(lambda)));
   f.tell(
       ", rho {operating_point.rho:3}\n"
       "set up in {setup_s:duration}, factor {factor}; memory: workspace {memory.workspace_bytes:bytes}, tables "
@@ -303,7 +325,7 @@ Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& 
             {"files", report.files},
             {"notes", report.notes}};
   if (s.error) f.add("error", figures_of(*s.error));
-  tell_eye(f, eye.lambda().by_rule);
+  tell_eye(f, eye.lambda().origin);
   tell_frames(f, report);
   tell_tables(f, report);
   return f;

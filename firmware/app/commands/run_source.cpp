@@ -13,8 +13,10 @@
 #include "firmware/eye/settings/board_lines.hpp"
 #include "firmware/eye/source_list.hpp"
 #include "firmware/files/output_target.hpp"
+#include "firmware/text/number_text.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
+#include "recon/option_names.hpp"
 
 namespace compueye::firmware {
 using hal::Result;
@@ -23,10 +25,23 @@ namespace {
 
 /// Lines "key = value".
 std::string header_text(const RecordingRequest& request, const Board& board) {
-  std::string text = board_lines(board);
+  std::string text = board_lines(board) + request.lambda;
   if (!board.source.simulated()) return text;
   return text + fmt::format("scene = {}\nscene_seed = {}\nseed = {}\n", visible_text(request.scene), request.scene_seed,
                             request.seed);
+}
+
+std::string problem_of(const ReadyEye& eye) {
+  const recon::Objective& objective = eye.reconstructor().objective();
+  return fmt::format("{} {} {} {} {}", name(eye.reconstructor().plan().solver), name(objective.basis),
+                     name(objective.constraint), objective.lo, objective.hi);
+}
+
+/// lambda by hand is said again by hand.
+std::string lambda_lines(const ReadyEye& eye) {
+  const LambdaChoice& lambda = eye.lambda();
+  if (lambda.origin == LambdaOrigin::hand) return {};
+  return fmt::format("lambda = {}\nlambda_rule = {}\nlambda_of = {}\n", lambda.value, lambda.rule, problem_of(eye));
 }
 
 /// Empty where nothing differs.
@@ -83,11 +98,24 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
   // Without a limit the frames read ahead of the last one would be made only to be thrown away.
   if (options.lossless && frames > 0) wanted.frame_limit = frames;
   made.source_ = TRY(board_source(board, std::move(wanted), clock));
-  if (options.record.empty()) return made;
-  made.recorder_ = TRY(with_recorder(
-      {options.record, scene.name, options.scene.seed, options.seed, options.lossless, options.stop_if_unrecorded},
-      board, *made.source_, clock));
   return made;
+}
+
+Result<void> RunSource::begin_recording(const RunOptions& options, const Board& board, const sim::Scene& scene,
+                                        const ReadyEye& eye, hal::Clock& clock) {
+  if (options.record.empty()) return {};
+  recorder_ = TRY(with_recorder({options.record, scene.name, options.scene.seed, options.seed, options.lossless,
+                                 options.stop_if_unrecorded, lambda_lines(eye)},
+                                board, *source_, clock));
+  return {};
+}
+
+std::optional<double> RunSource::recorded_lambda(const ReadyEye& eye) const {
+  if (replay_ == nullptr) return std::nullopt;
+  const std::string& header = replay_->recording().header().settings;
+  if (value_in(header, "lambda_rule") != fmt::format("{}", eye.lambda().rule)) return std::nullopt;
+  if (value_in(header, "lambda_of") != problem_of(eye)) return std::nullopt;
+  return typed_number(value_in(header, "lambda").value_or(std::string()));
 }
 
 hal::SampleSource& RunSource::source() noexcept {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "drivers/recording/replay_source.hpp"
 #include "firmware/app/commands/run.hpp"
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/ready_eye.hpp"
 #include "hal/clock.hpp"
 #include "hal/sample_source.hpp"
 #include "sim/scene.hpp"
@@ -23,6 +25,7 @@ struct RecordingRequest {
   std::uint64_t seed = 0;
   bool lossless = false;         ///< waits for the disk
   bool stop_on_failure = false;  ///< frames end when the file fails
+  std::string lambda = {};       ///< lines that say how pictures were made of the frames meanwhile, if they were
 };
 
 /// Whether a recording can be begun at `path`, so that it is known before the set-up and not after. Errors: io (there
@@ -44,6 +47,10 @@ class RunSource {
   /// ReplaySource::open(); mismatch (a recording of another number of channels or depth than the board's).
   [[nodiscard]] static hal::Result<RunSource> make(const RunOptions& options, const Board& board,
                                                    const sim::Scene& scene, std::uint64_t frames, hal::Clock& clock);
+  /// Where the options ask for a recording, its file is begun, with the lambda that is run with. Errors: those of
+  /// with_recorder().
+  [[nodiscard]] hal::Result<void> begin_recording(const RunOptions& options, const Board& board,
+                                                  const sim::Scene& scene, const ReadyEye& eye, hal::Clock& clock);
 
   /// What is tried before the run; nothing of it is recorded.
   [[nodiscard]] hal::SampleSource& unrecorded() noexcept { return *source_; }
@@ -53,6 +60,10 @@ class RunSource {
   [[nodiscard]] std::string name() const;
   /// Where the recording's board was another one, a sentence; empty: it was not, or there is no recording.
   [[nodiscard]] const std::string& mismatch() const noexcept { return mismatch_; }
+
+  /// The lambda of the run that made the recording, if its rule gave the same as `eye`'s: only then are both of the
+  /// same problem.
+  [[nodiscard]] std::optional<double> recorded_lambda(const ReadyEye& eye) const;
 
   /// What went wrong with the recording so that nothing more can be written, and what follows: empty as long as nothing
   /// did. From any thread.

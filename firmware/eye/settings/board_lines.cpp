@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <optional>
 
 #include "firmware/eye/settings/setting.hpp"
 #include "firmware/text/words.hpp"
@@ -84,6 +85,12 @@ std::vector<BoardDifference> board_differences(std::string_view lines, const Boa
     compare(key.substr(prefix.size()), at == then.end() ? std::string(left_out) : at->second, value);
   }
   return differences;
+}
+
+std::optional<std::string> value_in(std::string_view lines, std::string_view key) {
+  const Lines all = parsed(lines);
+  const auto at = all.find(key);
+  return at == all.end() ? std::nullopt : std::optional(at->second);
 }
 
 std::string text_of(const std::vector<BoardDifference>& differences) {

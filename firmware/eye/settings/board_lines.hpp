@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,9 @@ namespace compueye::firmware {
 /// "board.eye.rows = 8". Before them "board = NAME", "distance_mm = 10" (which older recordings have alone) and
 /// "board_hash = ", sixteen hexadecimal digits of all lines that begin with "board.".
 [[nodiscard]] std::string board_lines(const Board& board);
+
+/// What such lines say of a key.
+[[nodiscard]] std::optional<std::string> value_in(std::string_view lines, std::string_view key);
 
 /// A setting that was another one then.
 struct BoardDifference {
