@@ -27,6 +27,8 @@ constexpr double probe_size = 0.3;
 /// Both chosen by bench/lambda_rule --family --tuning.
 constexpr double standard_errors = 1.0, coefficients_per_channel = 0.3;
 constexpr int least_cold_iterations = 60;
+/// With fewer, the pictures of a lambda below the rule's are those of iterations that have not got there.
+constexpr int least_to_fall = 100;
 /// Of the samples' squares.
 constexpr double nothing_left = 1e-4;
 
@@ -57,6 +59,7 @@ class RiskSearch {
         progress_(progress) {
     found_.lambda = objective.lambda;
     found_.factor = std::move(factor);
+    falls_ = !plan_.warm_start && plan_.iterations >= least_to_fall;
     if (plan_.warm_start) plan_.iterations = std::max(plan_.iterations, least_cold_iterations);
     plan_.warm_start = false;
     plan_.measure_gap = false;
@@ -74,12 +77,16 @@ class RiskSearch {
     if (!(noise_ > 0.0)) return std::move(found_);
     TRY(try_at(0));
     for (int k = 1; k <= steps_up && !hopeless_; ++k) TRY(try_at(k));
-    for (int k = 1; k <= sure_steps_down; ++k) TRY(try_at(-k));
+    for (int k = 1; k <= sure_steps_down && falls_; ++k) TRY(try_at(-k));
     for (int k = sure_steps_down + 1; k <= steps_down && best().k == 1 - k; ++k) TRY(try_at(-k));
     const double coarse = best().k;
-    TRY(try_at(coarse - .5));
+    if (falls_ || coarse > 0.0) TRY(try_at(coarse - .5));
     TRY(try_at(coarse + .5));
-    found_.lambda = best().trial.lambda;
+    if (const double misfit = best().trial.misfit / noise_; misfit > most_misfit()) {
+      found_.unexplained = std::sqrt(misfit);
+    } else {
+      found_.lambda = best().trial.lambda;
+    }
     for (const Tried& one : tried_) found_.trials.push_back(one.trial);
     return std::move(found_);
   }
@@ -97,6 +104,11 @@ class RiskSearch {
   /// What one standard error of the samples' noise is in risk.
   [[nodiscard]] double slack() const noexcept {
     return weighs_l1_ ? standard_errors * noise_ / std::sqrt(static_cast<double>(channels_.size())) : 0.0;
+  }
+
+  /// Over the noise: what a sigma that is known to a third explains, and three standard errors of few channels.
+  [[nodiscard]] double most_misfit() const noexcept {
+    return std::max(2.0, 1.0 + 3.0 * std::sqrt(2.0 / static_cast<double>(channels_.size())));
   }
 
   [[nodiscard]] double least_risk() const {
@@ -188,6 +200,7 @@ class RiskSearch {
   double noise_ = 0.0;  ///< that the channels hold together
   LambdaByRisk found_;
   std::vector<Tried> tried_;
+  bool falls_ = false;     ///< lambdas below the start are tried too
   bool hopeless_ = false;  ///< no larger lambda can win
 };
 

@@ -26,14 +26,16 @@ struct LambdaTrial {
 
 struct LambdaByRisk {
   double lambda = 0.0;
+  double unexplained = 0.0;         ///< where the start stands because the choice left so many times what noise does
   std::vector<LambdaTrial> trials;  ///< the first is at the start
   std::optional<Factor> factor;     ///< of admm in single precision, for Reconstructor::create()
 };
 
 /// A lambda from the samples of one frame, to be kept for those that follow. Tried are `objective.lambda` (by rule,
 /// say) and its multiples by powers of four, from 1/64 up to where nothing is left of the picture, then half and twice
-/// the best of these. With M channels of a weight above zero, Stein's unbiased estimate of the samples' risk (Stein
-/// 1981, "Estimation of the mean of a multivariate normal distribution") is
+/// the best of these; none below the start where frames are warm or of fewer than a hundred iterations, which do not
+/// get to the picture of a lower lambda. With M channels of a weight above zero, Stein's unbiased estimate of the
+/// samples' risk (Stein 1981, "Estimation of the mean of a multivariate normal distribution") is
 ///
 ///     risk = ||y - A x(y)||^2 - M sigma^2 + 2 sigma^2 b'(A x(y + e b) - A x(y)) / e
 ///
@@ -46,7 +48,9 @@ struct LambdaByRisk {
 /// 2 sigma^2 times -log of the density of y and x where Psi x is Laplacian with 0.3 M coefficients that count (Pereyra,
 /// Bioucas-Dias & Figueiredo 2015, "Maximum-a-posteriori estimation with unknown regularisation parameters"). Both
 /// numbers were chosen on tuning scenes (docs/lambda-rule.md). Where lambda is not the weight of an l1 term, and with
-/// a second pass, the risk decides alone.
+/// a second pass, the risk decides alone. Where even the choice leaves more than twice the squares that noise does, the
+/// samples tell of something else (iterations that are too few, a response that is another eye's), and the start
+/// stands.
 ///
 /// Costs up to thirty cold frames, of sixty iterations or more where the plan starts warm. Without noise the start
 /// stands. The same input gives the same lambda; y and sigma times a power of two give lambda times that. Errors: those

@@ -143,6 +143,9 @@ hal::Result<std::string> ReadyEye::choose_lambda_by(std::span<const float> y, st
     if (given_up(found.error())) return tl::unexpected(std::move(found.error()));
     return found.error().text();
   }
+  if (found->unexplained > 0.0) {
+    return "pictures of so many iterations leave " + significant(found->unexplained, 3) + " times what noise does";
+  }
   auto set = set_lambda(living, found->lambda, LambdaOrigin::samples, progress);
   if (set) return std::string();
   if (given_up(set.error())) return tl::unexpected(std::move(set.error()));

@@ -170,6 +170,50 @@ TEST_CASE("on an eye lambda by risk stays near the best lambda at any noise, whe
   CHECK(worst_by_rule > 3.0);
 }
 
+TEST_CASE("lambda by risk does not fall where iterations are too few to follow") {
+  Random random(17);
+  const Response a = random_response(random, 200, Picture{side, side}, 0.3);
+  Objective objective;
+  objective.basis = BasisKind::dct;
+  objective.constraint = ConstraintKind::box;
+  objective.lambda = 5.0;
+  const Scene scene = noisy_half(a, 0.2, 18);
+  const auto lowest = [&](int iterations, bool warm) {
+    Plan plan;
+    plan.solver = solver_named(warm ? "pdhg" : "admm");
+    plan.iterations = iterations;
+    plan.warm_start = warm;
+    const auto found = lambda_by_risk(a, objective, plan, {scene.y, {}, 0.2});
+    REQUIRE(found.has_value());
+    double least = found->lambda;
+    for (const LambdaTrial& trial : found->trials) least = std::min(least, trial.lambda);
+    return least;
+  };
+  CHECK(lowest(100, false) < 5.0);
+  CHECK(lowest(99, false) == 5.0);
+  CHECK(lowest(200, true) == 5.0);
+}
+
+TEST_CASE("lambda by risk keeps the start where no picture explains the samples, and says how far off it is") {
+  Random random(19);
+  const Response a = random_response(random, 200, Picture{side, side}, 0.3);
+  const Response another = random_response(random, 200, Picture{side, side}, 0.3);
+  Objective objective;
+  objective.basis = BasisKind::dct;
+  objective.constraint = ConstraintKind::box;
+  objective.lambda = 0.1;
+  const Scene own = noisy_half(a, 0.5, 20), foreign = noisy_half(another, 0.5, 20);
+  Plan plan;
+  plan.iterations = 300;
+  const auto explained = lambda_by_risk(a, objective, plan, {own.y, {}, 0.5});
+  const auto not_explained = lambda_by_risk(a, objective, plan, {foreign.y, {}, 0.5});
+  REQUIRE(explained.has_value());
+  REQUIRE(not_explained.has_value());
+  CHECK(explained->unexplained == 0.0);
+  CHECK(not_explained->lambda == 0.1);
+  CHECK(not_explained->unexplained > 2.0);
+}
+
 TEST_CASE("lambda by risk follows the unit of the samples") {
   Random random(13);
   const Response a = random_response(random, 60, Picture{side, side}, 0.3);
