@@ -27,6 +27,9 @@ hal::Result<void> check_objective(const Objective& objective) {
   if (objective.epsilon && !(std::isfinite(*objective.epsilon) && *objective.epsilon >= 0.0)) {
     return out_of_range("epsilon", *objective.epsilon, "a finite number of 0 or more");
   }
+  if (objective.huber && !(std::isfinite(*objective.huber) && *objective.huber > 0.0)) {
+    return out_of_range("huber", *objective.huber, "a finite number above 0");
+  }
   const bool ordered = std::isfinite(objective.lo) && std::isfinite(objective.hi) && objective.lo < objective.hi;
   if (objective.constraint == ConstraintKind::box && !ordered) {
     return fail(ErrorCode::out_of_range, "box",
@@ -72,6 +75,11 @@ hal::Result<void> check_pair(const Objective& objective, const Plan& plan) {
     return fail(ErrorCode::usage, "epsilon",
                 std::string(solver.name) + " has no such bound; these solvers do: " +
                     names_of_solvers([](const SolverRow& row) { return row.takes_epsilon; }));
+  }
+  if (objective.huber && (!solver.minimises || objective.epsilon || plan.l1_reweighting > 0.0)) {
+    return fail(ErrorCode::usage, "huber", "needs " + names_of_solvers([](const SolverRow& row) {
+                                             return row.minimises;
+                                           }) + ", and neither an epsilon nor a second pass for the l1 term");
   }
   if (plan.l1_reweighting > 0.0 && !(solver.reweights && objective.basis == BasisKind::identity)) {
     return fail(ErrorCode::usage, "l1 reweighting", "needs " + names_of_solvers([](const SolverRow& row) {

@@ -10,6 +10,7 @@
 
 #include "hal/try.hpp"
 #include "recon/core/parts/workspace.hpp"
+#include "recon/huber_passes.hpp"
 #include "recon/problem_checks.hpp"
 #include "recon/setup/operator_list.hpp"
 #include "recon/setup/penalty_rule.hpp"
@@ -48,6 +49,8 @@ struct Reconstructor::Tables {
   std::unique_ptr<WorkerThreads> workers;  // none where one thread does it all
   std::variant<ProblemIn<float>, ProblemIn<double>> problem;
 
+  [[nodiscard]] std::size_t frame_bytes() const noexcept;
+
   template <class T>
   hal::Result<void> prepare(const Response& response, std::optional<Factor> stored, const Progress& progress) {
     const std::vector<double> scale(unit.response == 0 ? 0 : seeing.size(), std::ldexp(1.0, unit.response));
@@ -82,6 +85,10 @@ static auto with_problem(Tables& tables, const Work& work) {
   return std::visit(
       [&]<class T>(const ProblemIn<T>& problem) { return work(*tables.plan.solver->template in<T>().frame, *problem); },
       tables.problem);
+}
+
+std::size_t Reconstructor::Tables::frame_bytes() const noexcept {
+  return with_problem(*this, [](const auto& solver, const auto& p) { return solver.bytes(p); });
 }
 
 Reconstructor::Reconstructor(std::unique_ptr<Tables> tables) noexcept : tables_(std::move(tables)) {}
@@ -203,7 +210,13 @@ std::vector<std::byte> Reconstructor::freeze(const core::FrozenSamples& samples)
 }
 
 std::size_t Reconstructor::required_bytes() const noexcept {
-  return with_problem(*tables_, [](const auto& solver, const auto& problem) { return solver.bytes(problem); });
+  core::Workspace counter;
+  static_cast<void>(counter.take<std::byte>(tables_->frame_bytes()));
+  if (objective().huber) {
+    static_cast<void>(counter.take<std::byte>(least_residual_bytes()));
+    static_cast<void>(HuberPasses(*objective().huber, channels(), plan().max_reweighted, counter));
+  }
+  return counter.used();
 }
 
 std::size_t Reconstructor::table_bytes() const noexcept {
@@ -236,10 +249,20 @@ FrameInfo Reconstructor::solve(std::span<const float> y, std::span<const float> 
     refused.point = operating_point();
     return refused;
   }
-  const float* w = weights.empty() ? nullptr : weights.data();
-  return with_problem(*tables_, [&](const auto& solver, const auto& problem) {
-    return solver.solve(problem, y.data(), w, workspace.data(), x.data());
-  });
+  core::Workspace memory(workspace.data());
+  auto* const frame = memory.take<std::byte>(tables_->frame_bytes());
+  const auto once = [&](std::span<const float> with) {
+    const float* w = with.empty() ? nullptr : with.data();
+    return with_problem(*tables_, [&](const auto& solver, const auto& problem) {
+      return solver.solve(problem, y.data(), w, frame, x.data());
+    });
+  };
+  if (!objective().huber) return once(weights);
+  const std::size_t bytes = least_residual_bytes();
+  const std::span<std::byte> room(memory.take<std::byte>(bytes), bytes);
+  HuberPasses passes(*objective().huber, channels(), plan().max_reweighted, memory);
+  return passes.run(weights, once,
+                    [&](std::span<float> residuals) { channel_residuals(y, weights, room, x, residuals); });
 }
 
 std::size_t Reconstructor::least_residual_bytes() const noexcept {

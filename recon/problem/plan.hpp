@@ -20,6 +20,10 @@ struct Objective {
   double hi = 1.0;
   double lambda = 0.0;                           ///< >= 0
   std::optional<double> epsilon = std::nullopt;  ///< >= 0, in units of y
+  /// > 0, in units of y: residuals beyond it count by their size and not by their square, so that samples far off,
+  /// which no mask has caught, do not decide the picture (recon/huber_passes.hpp). A frame then is solved up to eight
+  /// times.
+  std::optional<double> huber = std::nullopt;
 };
 
 /// admm, the first row of recon/solver_list.hpp.

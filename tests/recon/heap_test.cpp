@@ -21,7 +21,14 @@ TEST_CASE("solving a frame does not touch the heap, for any solver, basis, const
     weights[2] = weights[11] = weights[39] = 0.0F;
     weights[20] = 0.25F;
     bad[7] = std::nanf("");
-    for (const SolverSetting& setting : every_setting()) {
+    std::vector<SolverSetting> settings = every_setting();
+    for (SolverSetting setting : every_setting()) {
+      if (!setting.plan.solver->minimises || setting.objective.epsilon) continue;
+      setting.name += " huber";
+      setting.objective.huber = 1e-3;
+      settings.push_back(setting);
+    }
+    for (const SolverSetting& setting : settings) {
       CAPTURE(setting.name);
       const auto solver = recon::Reconstructor::create(a, setting.objective, setting.plan).value();
       const recon::AlignedWorkspace workspace(solver.required_bytes());
@@ -35,7 +42,7 @@ TEST_CASE("solving a frame does not touch the heap, for any solver, basis, const
       const HeapUse used = heap_use_of_this_thread() - before;
       CHECK(used.calls() == 0);
       CHECK(whole.health != recon::Health::invalid);
-      CHECK(with_missing.channels_reweighted == 4);
+      CHECK(with_missing.channels_reweighted == (setting.objective.huber ? 6 : 4));
       CHECK(invalid.health == recon::Health::invalid);
       CHECK(refused.health == recon::Health::invalid);
       CHECK(bytes == workspace.span().size());
@@ -43,6 +50,6 @@ TEST_CASE("solving a frame does not touch the heap, for any solver, basis, const
       ++solved;
     }
   }
-  CHECK(solved == 2 * static_cast<int>(every_setting().size()));
+  CHECK(solved > 2 * static_cast<int>(every_setting().size()));
   CHECK(solved > 200);
 }

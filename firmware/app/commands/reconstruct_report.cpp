@@ -66,6 +66,7 @@ Figures objective_figures(const ReconstructOptions& o, std::optional<double> sig
           {"hi", box ? Value(objective.hi) : Value()},
           {"lambda", objective.lambda},
           {"epsilon", objective.epsilon},
+          {"huber", objective.huber},
           {"lambda_by", lambda_origin(o).word},
           {"sigma", sigma}};
 }

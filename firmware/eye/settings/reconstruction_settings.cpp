@@ -131,6 +131,13 @@ void add_way(std::vector<Setting>& all) {
            .within({1, recon::WorkerThreads::most})
            .otherwise(1)
            .option_of(all_that_solve, "--threads", "T"),
+       field<&Board::objective, &Objective::huber>(
+           "huber",
+           "residuals beyond V white pixels count by size, not by square: for samples far off that nothing has masked; "
+           "a frame then is solved up to eight times")
+           .within({0, 1e9, true, false})
+           .option_of(all_that_solve, "--huber", "V")
+           .only_of([](const SolverRow& row) { return row.minimises; }, "a sum of squares to bend"),
        choice_field<switch_names, &Board::find_dead>(
            "find_dead", "run finds dead, stuck and hot channels by what the others predict, and leaves them out")
            .otherwise("on")
