@@ -137,10 +137,11 @@ class FamilyEye {
     }
     const auto channels = static_cast<double>(seeing_.size());
     const double misfit = info.residual * info.residual;
-    fmt::print("{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", case_.name, frame.scene, frame.seed,
-               frame.snr_db, frame.sigma, std::sqrt(squares / channels), lambda,
+    fmt::print("{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", case_.name, frame.scene,
+               frame.seed, frame.snr_db, frame.sigma, std::sqrt(squares / channels), lambda,
                recon::nmse(picture, frame.truth).value(), misfit / (channels * frame.sigma * frame.sigma),
-               freedom / (probe_size * frame.sigma * channels), (info.objective - misfit / 2.0) / lambda);
+               freedom / (probe_size * frame.sigma * channels), (info.objective - misfit / 2.0) / lambda,
+               colour(frame.y, picture));
   }
 
   [[nodiscard]] double setup_s() const noexcept { return setup_s_; }
@@ -166,6 +167,35 @@ class FamilyEye {
       frame.y.push_back(static_cast<float>(signal[m] + frame.sigma * random.gaussian()));
     }
     return frame;
+  }
+
+  /// Squares of the residual's correlations at every lag but none, over the square of its power: least where it is
+  /// white (Almeida & Figueiredo 2013, "Parameter estimation for blind and non-blind deblurring using residual
+  /// whiteness measures").
+  [[nodiscard]] double colour(const std::vector<float>& y, const hal::Image& picture) const {
+    std::vector<double> residual(y.size());
+    response_.forward(std::vector<double>(picture.pixels.begin(), picture.pixels.end()), residual);
+    for (std::size_t m = 0; m < y.size(); ++m) residual[m] = y[m] - residual[m];
+    constexpr int most_lag = 4;
+    const int rows = case_.eye.rows, cols = case_.eye.columns;
+    const auto correlation = [&](int down, int right) {
+      double sum = 0.0;
+      for (int r = 0; r + down < rows; ++r) {
+        for (int c = std::max(0, -right); c < std::min(cols, cols - right); ++c) {
+          sum += residual[static_cast<std::size_t>(r * cols + c)] *
+                 residual[static_cast<std::size_t>((r + down) * cols + c + right)];
+        }
+      }
+      return sum;
+    };
+    double sum = 0.0;
+    for (int down = 0; down <= most_lag; ++down) {
+      for (int right = down == 0 ? 1 : -most_lag; right <= most_lag; ++right) {
+        sum += correlation(down, right) * correlation(down, right);
+      }
+    }
+    const double power = correlation(0, 0);
+    return power > 0.0 ? sum / (power * power) : 0.0;
   }
 
   const Case& case_;
