@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -53,11 +52,9 @@ Result<void> check_sees(const ReconstructOptions& o, const recon::Response& resp
 }
 
 /// The factor and the penalty come from squares of the entries.
-Result<void> check_range(const std::string& file, recon::Precision precision, const recon::Response& response) {
+Result<void> check_range(const std::string& file, const recon::Response& response) {
   const double squares = response.squared_norm();
-  const double limit = precision == recon::Precision::f64 ? std::numeric_limits<double>::max()
-                                                          : double{std::numeric_limits<float>::max()};
-  if (squares <= limit) return {};
+  if (std::isfinite(squares)) return {};
   return fail(ErrorCode::out_of_range, file,
               fmt::format("has entries so large that their squares (with the weights) add up to {:.3g}, expected "
                           "entries around 0 to 1, the share of a pixel that a channel sees",
@@ -75,7 +72,7 @@ Result<Inputs> read_inputs(const ReconstructOptions& o, const ProblemStatement& 
   inputs.frames = TRY(read_frame_inputs(response, o.samples, o.weights));
   inputs.response = scaled_response(std::move(response), inputs.frames);
   TRY(check_sees(o, *inputs.response, true));
-  TRY(check_range(o.response, problem.board.plan.precision, *inputs.response));
+  TRY(check_range(o.response, *inputs.response));
   if (!o.truth.empty()) inputs.truth = TRY(Truth::read(o.truth, size, inputs.frames.frames));
   return inputs;
 }

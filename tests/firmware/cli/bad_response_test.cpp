@@ -87,7 +87,7 @@ TEST_CASE("numbers that overflow the solver give an error, never a picture") {
   check_refused(problem, std::string(scratch_command) + "--precision f64", ErrorCode::out_of_range, "A.npy",
                 {"inf", "0", "1"});
   put_npy(problem.folder(), "A.npy", {3, 4}, {1e60, 0.5, 0, 0, 0, 1, 0.5, 0, 0, 0, 1, 0.5});
-  check_refused(problem, scratch_command, ErrorCode::out_of_range, "A.npy", {"1e+120", "0", "1"});
+  check_refused(problem, scratch_command, ErrorCode::out_of_range, "A.npy", {"5e+59", "1e-35", "1e35"});
   put_npy(problem.folder(), "A.npy", {3, 4}, {1e-3, 0.5, 0, 0, 0, 1, 0.5, 0, 0, 0, 1, 0.5});
   put_npy(problem.folder(), "y.npy", {3}, {3e38, -3e38, 3e38});
   check_refused(problem, scratch_command, ErrorCode::out_of_range, "frame 0", {"f64"});
