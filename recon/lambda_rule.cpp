@@ -44,7 +44,8 @@ double lambda_scale(const Response& response, BasisKind basis) {
   return basis == BasisKind::identity ? median_atom_norm(response, basis) : mean_overlap(response);
 }
 
-hal::Result<double> lambda_by_rule(const Response& response, SolverKind solver, BasisKind basis, double sigma) {
+hal::Result<double> lambda_by_rule(const Response& response, SolverKind solver, BasisKind basis, double sigma,
+                                   double white) {
   if (!std::isfinite(sigma) || sigma < 0.0) {
     return hal::fail(hal::ErrorCode::out_of_range, "sigma",
                      "is " + std::to_string(sigma) + ", expected a finite number of 0 or more");
@@ -57,10 +58,25 @@ hal::Result<double> lambda_by_rule(const Response& response, SolverKind solver, 
   const double scale = by_atoms ? median_atom_norm(response, basis) : lambda_scale(response, basis);
   const double size = scale > 0.0 ? scale : 1.0;
   if (solver->lambda == LambdaUse::variances) {
-    const double deviation = std::max(sigma / expected_pixel_deviation, least_share_of_scale * size);
+    const double deviation = std::max(sigma / (expected_pixel_deviation * white), least_share_of_scale * size);
     return deviation * deviation;
   }
-  return std::max(factor_of(basis, by_atoms) * sigma * size, least_share_of_scale * size * size);
+  return std::max(factor_of(basis, by_atoms) * sigma * size, least_share_of_scale * size * size * white);
+}
+
+double white_of_samples(const Response& response, std::span<const float> y, std::span<const float> weights) {
+  constexpr double dimmest = 0x1p-12, brightest = 8.0;
+  const std::vector<double> of_white = response.row_sums();
+  double squares = 0.0, white_squares = 0.0;
+  for (std::size_t m = 0; m < of_white.size(); ++m) {
+    if (!weights.empty() && !(weights[m] > 0.0F)) continue;
+    if (of_white[m] == 0.0 || !std::isfinite(y[m])) continue;
+    squares += static_cast<double>(y[m]) * static_cast<double>(y[m]);
+    white_squares += of_white[m] * of_white[m];
+  }
+  if (!(squares > 0.0) || !(white_squares > 0.0)) return 1.0;
+  const double brightness = std::sqrt(squares / white_squares);
+  return brightness < dimmest || brightness > brightest ? brightness : 1.0;
 }
 
 }  // namespace compueye::recon

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "recon/reconstructor.hpp"
 
 namespace compueye::recon {
@@ -23,10 +25,16 @@ namespace compueye::recon {
 /// recon/lambda_by_risk.hpp improves on it from a frame's samples.
 ///
 /// All scale with y and A as lambda does. Without noise, or for an A that sees nothing, a millionth of the scale keeps
-/// lambda above zero. Errors: out_of_range when sigma is negative or not finite, mismatch for omp in a basis when the
-/// response does not know its picture.
+/// lambda above zero. `white` is how bright a white pixel is in x's unit: the prior's .35 and the millionth are shares
+/// of it. Errors: out_of_range when sigma is negative or not finite, mismatch for omp in a basis when the response does
+/// not know its picture.
 [[nodiscard]] hal::Result<double> lambda_by_rule(const Response& response, SolverKind solver, BasisKind basis,
-                                                 double sigma);
+                                                 double sigma, double white = 1.0);
+
+/// 1, unless samples are so far from what white pixels read that their unit must be another: then ||y|| over what white
+/// would read, of channels in use (`weights` empty: all). Below 2^-12 or above 8.
+[[nodiscard]] double white_of_samples(const Response& response, std::span<const float> y,
+                                      std::span<const float> weights);
 
 /// What the rule for l1 takes from the response: median_j ||a_j||_2 for the identity, mean_j ||a_j||_1 for other bases.
 /// Over all N columns, those that nobody sees included.

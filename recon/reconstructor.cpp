@@ -206,7 +206,7 @@ hal::Result<void> Reconstructor::set_iterations(int iterations) {
 
 std::vector<std::byte> Reconstructor::freeze(const core::FrozenSamples& samples) const {
   const auto* problem = std::get_if<ProblemIn<float>>(&tables_->problem);
-  return problem == nullptr ? std::vector<std::byte>() : plan().solver->freeze(**problem, samples);
+  return problem == nullptr || objective().huber ? std::vector<std::byte>() : plan().solver->freeze(**problem, samples);
 }
 
 std::size_t Reconstructor::required_bytes() const noexcept {

@@ -86,7 +86,7 @@ class Reconstructor {
   [[nodiscard]] const Factor& factor() const noexcept;
 
   /// A frame and its answer with everything that solve() works with, for a processor without a set-up of its own
-  /// (core/frame/frozen_frame.hpp); empty in double.
+  /// (core/frame/frozen_frame.hpp); empty in double, and with Huber's term, which is not of one frame.
   [[nodiscard]] std::vector<std::byte> freeze(const core::FrozenSamples& samples) const;
 
  private:

@@ -57,9 +57,10 @@ hal::Result<LivingResponse> living_response(const Board& board, const recon::Pro
 }
 
 hal::Result<LambdaChoice> choose_lambda(const recon::Response& response, recon::SolverKind solver,
-                                        recon::BasisKind basis, std::optional<double> by_hand, double sigma) {
+                                        recon::BasisKind basis, std::optional<double> by_hand, double sigma,
+                                        double white) {
   if (by_hand) return LambdaChoice{*by_hand, LambdaOrigin::hand, 0.0, 0.0};
-  const double rule = TRY(recon::lambda_by_rule(response, solver, basis, sigma));
+  const double rule = TRY(recon::lambda_by_rule(response, solver, basis, sigma, white));
   return LambdaChoice{rule, LambdaOrigin::rule, sigma, rule};
 }
 

@@ -44,10 +44,10 @@ struct LambdaChoice {
 };
 
 /// `by_hand` where there is one, else by the rule for this solver and basis from the noise `sigma` of one sample.
-/// Errors: those of lambda_by_rule().
+/// `white`: of lambda_by_rule(). Errors: those of it.
 [[nodiscard]] hal::Result<LambdaChoice> choose_lambda(const recon::Response& response, recon::SolverKind solver,
                                                       recon::BasisKind basis, std::optional<double> by_hand,
-                                                      double sigma);
+                                                      double sigma, double white = 1.0);
 
 /// A board made ready to reconstruct: the nominal response of its geometry with the rows of dead ommatidia zero,
 /// lambda, the factor (kept or made) and the reconstructor.

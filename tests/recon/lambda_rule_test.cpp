@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "recon/setup/solver_row.hpp"
 #include "recon/solver_list.hpp"
 #include "tests/recon/random_problem.hpp"
 
@@ -63,6 +64,33 @@ TEST_CASE("lambda follows the unit of the samples as the objective does") {
     CHECK(rule(a, basis, 0.0) > 0.0);
     CHECK(rule(a, basis, 0.2) == doctest::Approx(2.0 * rule(a, basis, 0.1)));
   }
+}
+
+TEST_CASE("white is one unless samples say that their unit is another") {
+  Random random(2);
+  const Response a = random_response(random, 30, Picture{1, 40}, 0.4);
+  std::vector<double> x(40, 0.3), y(30);
+  a.forward(x, y);
+  for (const double c : {1e-25, 1e-9, 0.01, 1.0, 4095.0, 1e25}) {
+    CAPTURE(c);
+    std::vector<float> samples, weights(30, 1.0F);
+    for (const double value : y) samples.push_back(static_cast<float>(c * value));
+    const double wanted = c < 1e-3 || c > 10.0 ? 0.3 * c : 1.0;
+    CHECK(white_of_samples(a, samples, {}) == doctest::Approx(wanted).epsilon(1e-5));
+    samples[3] = std::nanf("");
+    samples[4] = 1e30F;
+    weights[3] = weights[4] = 0.0F;
+    CHECK(white_of_samples(a, samples, weights) == doctest::Approx(wanted).epsilon(1e-5));
+    for (const char* solver : {"admm", "omp", "tikhonov"}) {
+      const auto of = [&](double sigma, double white) {
+        return lambda_by_rule(a, solver_named(solver), BasisKind::identity, sigma, white).value();
+      };
+      const double unit = solver_named(solver)->lambda == LambdaUse::variances ? 1.0 : c;
+      CHECK(of(0.01 * c, c) == doctest::Approx(unit * of(0.01, 1.0)));
+      CHECK(of(0.0, c) == doctest::Approx(unit * of(0.0, 1.0)));
+    }
+  }
+  CHECK(white_of_samples(a, std::vector<float>(30, 0.0F), {}) == 1.0);
 }
 
 TEST_CASE("the rule refuses a sigma that is none, and survives an eye that sees nothing") {

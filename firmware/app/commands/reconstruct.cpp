@@ -19,6 +19,7 @@
 #include "hal/try.hpp"
 #include "recon/aligned_workspace.hpp"
 #include "recon/lambda_by_risk.hpp"
+#include "recon/lambda_rule.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -90,7 +91,8 @@ Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, con
 /// The solver knows of lambda and response, people of the options and files behind them.
 std::string place_of(const ReconstructOptions& o, const std::string& place) {
   if (place == "operator") return "--operator";
-  return o.settings.has("--" + place) ? "--" + place : o.response;
+  if (o.settings.has("--" + place)) return "--" + place;
+  return place == "lambda" || place == "rho" ? place + " by rule" : o.response;
 }
 
 Result<recon::Reconstructor> set_up(const ReconstructOptions& o, Board board, const Inputs& inputs,
@@ -99,8 +101,10 @@ Result<recon::Reconstructor> set_up(const ReconstructOptions& o, Board board, co
   board.plan.max_reweighted = inputs.frames.max_reweighted;
   // With epsilon or a rank there is no lambda.
   if (!board.sigma && !board.lambda) board.lambda = 0.0;
+  const double white = recon::white_of_samples(a, inputs.frames.samples_of(inputs.frames.first_sound),
+                                               inputs.frames.weights_of(inputs.frames.first_sound));
   board.objective.lambda =
-      TRY(choose_lambda(a, board.plan.solver, board.objective.basis, board.lambda, board.noise_sigma())).value;
+      TRY(choose_lambda(a, board.plan.solver, board.objective.basis, board.lambda, board.noise_sigma(), white)).value;
   std::optional<recon::Factor> factor;
   if (o.lambda_from_samples) {
     recon::LambdaByRisk found = TRY(lambda_from_samples(o, board, inputs, progress));
