@@ -36,13 +36,21 @@ bool HuberPasses::reweigh(std::span<const float> given) noexcept {
     const float own = given_to(given, m), size = std::abs(residuals_[m]);
     const bool reduced = size > (own == 1.0F ? least : static_cast<float>(delta_));
     const float weight = reduced ? own * static_cast<float>(delta_ / static_cast<double>(size)) : own;
-    stands = stands && std::abs(weight - weights_[m]) <= still;
+    stands = stands && std::abs(weight - weights_[m]) <= still * std::max(weight, weights_[m]);
     weights_[m] = weight;
   }
   return stands;
 }
 
-double HuberPasses::excess(std::span<const float> given) const noexcept {
+double HuberPasses::objective_of(std::span<const float> given, const FrameInfo& info) const noexcept {
+  constexpr double told = 1e-12;
+  const double squares = 0.5 * info.residual * info.residual, bent = data_term(given);
+  // Beside the square of an outlier that there was no room for, the penalty is lost in rounding.
+  const double penalty = info.objective - squares > told * info.objective ? info.objective - squares : 0.0;
+  return bent + penalty;
+}
+
+double HuberPasses::data_term(std::span<const float> given) const noexcept {
   double sum = 0.0;
   for (std::size_t m = 0; m < weights_.size(); ++m) {
     const double size = std::abs(static_cast<double>(residuals_[m]));

@@ -15,9 +15,11 @@ namespace compueye::recon {
 /// squares); no pass raises the objective, given the optimum of each.
 class HuberPasses {
  public:
-  /// A frame is solved up to this many times, fewer where no weight moves by more than `still`.
+  /// A frame is solved up to this many times, fewer where the weights stand still.
   static constexpr int most = 8;
-  static constexpr float still = 0.01F;
+  static constexpr float still = 0.01F;  ///< of the larger of a channel's weights before and after
+  /// Channels beyond delta that a frame of `seeing` channels is to have room for: a tenth, rounded up.
+  [[nodiscard]] static constexpr int room(int seeing) noexcept { return (seeing + 9) / 10; }
 
   /// `delta` > 0, in units of y. `most_weighted`: Plan::max_reweighted. Made on a Workspace without memory it only
   /// counts.
@@ -46,7 +48,7 @@ class HuberPasses {
     info.iterations = iterations;
     info.duality_gap = -1.0;
     if (info.health == Health::invalid) return info;
-    info.objective += excess(given) - 0.5 * info.residual * info.residual;
+    info.objective = objective_of(given, info);
     if (!settled) info.health = Health::budget_used;
     return info;
   }
@@ -60,8 +62,10 @@ class HuberPasses {
   [[nodiscard]] bool reweigh(std::span<const float> given) noexcept;
   /// The residual beyond which a channel is weighed anew: delta, or what leaves no more of them than planned.
   [[nodiscard]] float least_outlier(std::span<const float> given) noexcept;
+  /// Huber's, of what the last pass says.
+  [[nodiscard]] double objective_of(std::span<const float> given, const FrameInfo& info) const noexcept;
   /// Sum of the data term.
-  [[nodiscard]] double excess(std::span<const float> given) const noexcept;
+  [[nodiscard]] double data_term(std::span<const float> given) const noexcept;
 
   double delta_;
   std::size_t most_weighted_;

@@ -8,6 +8,7 @@
 #include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
 #include "recon/aligned_workspace.hpp"
+#include "recon/huber_passes.hpp"
 #include "recon/lambda_by_risk.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/response_fit.hpp"
@@ -83,6 +84,7 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const LivingResponse& l
   const auto seeing = static_cast<double>(std::count(eye.sees_.begin(), eye.sees_.end(), 1));
   const int missing = static_cast<int>(std::ceil(board.sensor.max_missing_share * seeing + 1e-9));
   plan.max_reweighted = board.find_dead ? 2 * missing : missing;
+  if (board.objective.huber) plan.max_reweighted += recon::HuberPasses::room(static_cast<int>(seeing));
   recon::Objective objective = board.objective;
   eye.lambda_ = TRY(choose_lambda(maker.response(), plan.solver, objective.basis, board.lambda, board.noise_sigma()));
   objective.lambda = eye.lambda_.value;

@@ -18,6 +18,7 @@
 #include "firmware/files/response_file.hpp"
 #include "hal/try.hpp"
 #include "recon/aligned_workspace.hpp"
+#include "recon/huber_passes.hpp"
 #include "recon/lambda_by_risk.hpp"
 #include "recon/lambda_rule.hpp"
 
@@ -95,10 +96,23 @@ std::string place_of(const ReconstructOptions& o, const std::string& place) {
   return place == "lambda" || place == "rho" ? place + " by rule" : o.response;
 }
 
+/// What weighs little in every frame is scaled in A and y, and so would be its residual.
+Result<void> check_huber(const ReconstructOptions& o, std::span<const double> row_scale) {
+  const auto scaled = std::find_if(row_scale.begin(), row_scale.end(), [](double s) { return s != 0.0 && s != 1.0; });
+  if (scaled == row_scale.end()) return {};
+  return fail(ErrorCode::usage, "--huber",
+              fmt::format("takes weights of which each channel's largest is 0 or 1, channel {} of {} has {:.4g}",
+                          scaled - row_scale.begin(), o.weights, *scaled * *scaled));
+}
+
 Result<recon::Reconstructor> set_up(const ReconstructOptions& o, Board board, const Inputs& inputs,
                                     const recon::Progress& progress) {
   const recon::Response& a = *inputs.response;
   board.plan.max_reweighted = inputs.frames.max_reweighted;
+  if (board.objective.huber) {
+    TRY(check_huber(o, inputs.frames.row_scale));
+    board.plan.max_reweighted += recon::HuberPasses::room(static_cast<int>(a.seeing_rows().size()));
+  }
   // With epsilon or a rank there is no lambda.
   if (!board.sigma && !board.lambda) board.lambda = 0.0;
   const double white = recon::white_of_samples(a, inputs.frames.samples_of(inputs.frames.first_sound),

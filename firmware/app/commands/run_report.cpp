@@ -51,6 +51,7 @@ Figures point_figures(const ReadyEye& eye) {
           {"rule_lambda", by_hand ? Value() : Value(lambda.rule)},
           {"lambda_over_rule", by_hand ? Value() : Value(lambda.value / lambda.rule)},
           {"sigma", by_hand ? Value() : Value(lambda.sigma)},
+          {"huber", eye.reconstructor().objective().huber},
           {"rho", eye.reconstructor().plan().rho}};
 }
 
