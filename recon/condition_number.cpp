@@ -1,10 +1,10 @@
 #include "recon/condition_number.hpp"
 
-#include <Eigen/Core>
-#include <Eigen/SVD>
 #include <cstdint>
 #include <limits>
 #include <vector>
+
+#include "recon/setup/symmetric_modes.hpp"
 
 namespace compueye::recon {
 
@@ -15,7 +15,7 @@ double condition_number(const Response& response) {
   for (Eigen::Index m = 0; m < a.rows(); ++m) {
     response.for_each_in_row(seeing[static_cast<std::size_t>(m)], [&](std::int32_t n, double v) { a(m, n) = v; });
   }
-  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(a).singularValues();
+  const Eigen::VectorXd values = singular_values(a);
   const double least = values[values.size() - 1];
   return least > 0.0 ? values[0] / least : std::numeric_limits<double>::infinity();
 }

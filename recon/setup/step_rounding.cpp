@@ -1,19 +1,16 @@
 #include "recon/setup/step_rounding.hpp"
 
-#include <Spectra/SymEigsSolver.h>
-
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "recon/setup/symmetric_modes.hpp"
 
 namespace compueye::recon {
 namespace {
 
-/// F^(-1/2) (F_stored - F) F^(-1/2) as Spectra takes a matrix.
+/// F^(-1/2) (F_stored - F) F^(-1/2).
 class RelativeError {
  public:
-  using Scalar = double;
-
   explicit RelativeError(const RoundedStep& step)
       : step_(step),
         change_(step.gains.array() - step.rest),
@@ -21,10 +18,6 @@ class RelativeError {
         scale_(1.0 / std::sqrt(step.rest)) {}
 
   [[nodiscard]] Eigen::Index rows() const { return step_.exact.rows(); }
-  [[nodiscard]] Eigen::Index cols() const { return step_.exact.rows(); }
-  void perform_op(const double* in, double* out) const {
-    Eigen::Map<Eigen::VectorXd>(out, rows()) = apply(Eigen::Map<const Eigen::VectorXd>(in, rows()));
-  }
   [[nodiscard]] Eigen::VectorXd apply(const Eigen::VectorXd& x) const {
     const Eigen::VectorXd scaled = rooted(x);
     const Eigen::VectorXd off =
@@ -50,8 +43,7 @@ double of_whole(const RelativeError& error) {
   const Eigen::Index order = error.rows();
   Eigen::MatrixXd matrix(order, order);
   for (Eigen::Index k = 0; k < order; ++k) matrix.col(k) = error.apply(Eigen::VectorXd::Unit(order, k));
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().cwiseAbs().maxCoeff();
+  return symmetric_values(matrix).cwiseAbs().maxCoeff();
 }
 
 /// 2 ||F^(-1/2) E D U' F^(-1/2)|| + ||F^(-1/2) E D^(1/2)||^2 with Frobenius's norm, where E is the rounding and D = f_0
@@ -79,13 +71,12 @@ double rounding(const RoundedStep& step) {
   if (!(most > 0.0)) return 0.0;  // nothing to iterate on: vectors that are stored as they are
   const RelativeError error(step);
   if (error.rows() <= whole_below) return of_whole(error);
-  constexpr Eigen::Index krylov = 40;
-  constexpr int most_restarts = 10;
-  constexpr double tolerance = 0.02, margin = 1.05;
-  Spectra::SymEigsSolver<RelativeError> solver(const_cast<RelativeError&>(error), 1, krylov);
-  solver.init();
-  if (solver.compute(Spectra::SortRule::LargestMagn, most_restarts, tolerance) < 1) return most;
-  return std::min(margin * std::abs(solver.eigenvalues()[0]), most);
+  const SymmetricProduct product = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, error.rows()) = error.apply(Eigen::Map<const Eigen::VectorXd>(in, error.rows()));
+  };
+  constexpr double margin = 1.05;
+  const auto largest = largest_magnitude(error.rows(), product, {.krylov = 40, .restarts = 10, .tolerance = 0.02});
+  return largest ? std::min(margin * std::abs(*largest), most) : most;
 }
 
 }  // namespace compueye::recon

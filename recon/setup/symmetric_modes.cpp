@@ -9,4 +9,8 @@ SymmetricModes symmetric_modes(const Eigen::MatrixXd& matrix) {
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
+Eigen::VectorXd symmetric_values(const Eigen::MatrixXd& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
 }  // namespace compueye::recon

@@ -67,8 +67,9 @@ TEST_CASE("a stored factor with right checksums and wrong values is made again, 
   recon::Objective objective;
   objective.lambda = 0.1;
   using Solver = std::pair<const char*, recon::BasisKind>;
-  for (const auto& [solver, basis] : {Solver{"admm", recon::BasisKind::identity}, Solver{"admm", recon::BasisKind::tv},
-                                      Solver{"adm", recon::BasisKind::dct}, Solver{"pdhg", recon::BasisKind::dct}}) {
+  for (const auto& [name, basis] : {Solver{"admm", recon::BasisKind::identity}, Solver{"admm", recon::BasisKind::tv},
+                                    Solver{"adm", recon::BasisKind::dct}, Solver{"pdhg", recon::BasisKind::dct}}) {
+    const std::string solver = name;
     CAPTURE(solver);
     recon::Plan plan;
     plan.solver = solver_named(solver);

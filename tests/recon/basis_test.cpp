@@ -45,7 +45,8 @@ double norm(const std::vector<double>& v) {
 
 TEST_CASE("the 2-D DCT of any size is the definition's") {
   Random random(21);
-  for (const auto& [rows, cols] : {std::pair{1, 1}, {1, 7}, {2, 3}, {5, 5}, {8, 8}, {12, 10}, {16, 16}, {17, 24}}) {
+  for (const auto& [height, width] : {std::pair{1, 1}, {1, 7}, {2, 3}, {5, 5}, {8, 8}, {12, 10}, {16, 16}, {17, 24}}) {
+    const int rows = height, cols = width;  // clang 14 captures no structured binding
     CAPTURE(rows);
     CAPTURE(cols);
     const int n = rows * cols;

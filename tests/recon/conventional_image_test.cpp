@@ -61,7 +61,8 @@ std::int32_t nearest_by_brute_force(const Response& a, int image_cols, int row, 
 }  // namespace
 
 TEST_CASE("every pixel shows the nearest seeing ommatidium") {
-  for (const auto& [grid, side] : {std::pair{1, 4}, {5, 20}, {8, 16}, {12, 36}}) {
+  for (const auto& [ommatidia, side] : {std::pair{1, 4}, {5, 20}, {8, 16}, {12, 36}}) {
+    const int grid = ommatidia;
     CAPTURE(grid);
     Response eye = narrow_eye(grid, side);
     if (grid == 1) {

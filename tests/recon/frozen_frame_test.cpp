@@ -14,6 +14,7 @@
 #include "tests/recon/every_setting.hpp"
 #include "tests/recon/solve_frame.hpp"
 #include "tests/recon/solver_problems.hpp"
+#include "tests/sanitized.hpp"
 
 using namespace compueye;
 using namespace compueye::tests;
@@ -101,14 +102,17 @@ recon::Reconstructor small_solver() {
 }  // namespace
 
 TEST_CASE("every setting gives the same bits again from its frozen bytes alone") {
-  int solved = 0;
+  int solved = 0, of_large = 0;
   std::set<recon::OperatorKind> kinds;
   for (const SolverProblem& problem : problems()) {
     for (const SolverSetting& setting : every_setting()) {
       if (setting.plan.precision != recon::Precision::f32) continue;
+      if (test::sanitized && problem.a.cols() > 1000 && ++of_large % 8 != 0) continue;
       CAPTURE(problem.name);
       CAPTURE(setting.name);
-      const auto solver = recon::Reconstructor::create(problem.a, setting.objective, setting.plan);
+      recon::Plan plan = setting.plan;
+      if (test::sanitized) plan.iterations = std::min(plan.iterations, 12);
+      const auto solver = recon::Reconstructor::create(problem.a, setting.objective, plan);
       REQUIRE(solver);
       Copy copy(frozen(*solver, sample_for(*solver)));
       const auto thawed = copy.thaw_any([&](const auto& frame) {

@@ -221,7 +221,8 @@ TEST_CASE("one pixel and one row have their closed forms") {
 
 TEST_CASE("pictures of every awkward size reach the reference") {
   Random random(52);
-  for (const auto& [rows, cols] : {std::pair{1, 17}, {17, 1}, {3, 11}, {1, 2}, {15, 3}, {5, 7}}) {
+  for (const auto& [height, width] : {std::pair{1, 17}, {17, 1}, {3, 11}, {1, 2}, {15, 3}, {5, 7}}) {
+    const int rows = height, cols = width;  // clang 14 captures no structured binding
     for (const auto constraint : {ConstraintKind::none, ConstraintKind::box}) {
       CAPTURE(rows);
       CAPTURE(cols);

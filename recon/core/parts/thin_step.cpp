@@ -19,7 +19,7 @@ struct SixteenLanes<float> {
 };
 template <>
 struct SixteenLanes<double> {
-  using type = double __attribute__((vector_size(128), aligned(64)));
+  using type __attribute__((aligned(64))) = double __attribute__((vector_size(128)));
 };
 template <class T>
 using Sixteen = typename SixteenLanes<T>::type;

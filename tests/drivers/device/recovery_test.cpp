@@ -169,10 +169,10 @@ TEST_CASE("an eye that starts anew says anew what it is, though nobody opens it 
     CAPTURE(bus->name);
     auto emulator = eye_settings(bus);
     emulator.boot_ns = 0;
+    int opened = 0, described = 0;  // the rig's last words are counted, too
     EyeRig rig(emulator);
     REQUIRE(rig.start());
     read_frames(rig, 3);
-    int opened = 0, described = 0;
     rig.way->at_open = [&] { ++opened; };
     rig.way->at_request = [&](Request request, const auto&) { described += request == Request::get_desc ? 1 : 0; };
     rig.inject({.kind = FaultKind::reboot});

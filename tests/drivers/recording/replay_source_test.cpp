@@ -112,7 +112,7 @@ TEST_CASE("a damaged recording keeps the contract: what is lost in it is a count
   std::string bytes = compueye::test::bytes_of(folder / "eye.rec");
   const std::size_t frame = frame_block_bytes(eye_side * eye_side, 12);
   const std::size_t first = bytes.size() - end_block_bytes - 60 * frame;
-  for (const std::size_t k : {5, 6, 7}) bytes[first + k * frame + 90] ^= 1;
+  for (const std::size_t k : {5U, 6U, 7U}) bytes[first + k * frame + 90] ^= 1;
   SourceUnderTest test = replayed(folder.file("damaged.rec", bytes), ReplayPace::fast);
   test.lose_frames = [](hal::SampleSource&, int) {};
   test.frames_per_run = 57;
