@@ -46,7 +46,7 @@ struct Figures {
 
 hal::Image sparse_scene(int index) {
   hal::Image scene(16, 16);
-  sim::RandomStream stream({1, sim::Effect::picture, static_cast<std::uint64_t>(index), 0});
+  sim::RandomStream stream({1, sim::Draws::picture, static_cast<std::uint64_t>(index), 0});
   for (int k = 0; k < dots; ++k) {
     scene.pixels[stream.below(256)] = static_cast<float>(stream.uniform(0.3, 1.0));
   }

@@ -132,7 +132,7 @@ hal::Result<std::vector<Line>> measure() {
           response->forward(std::vector<double>(truth[f].begin(), truth[f].end()), signal);
           samples.emplace_back();
           for (std::size_t m = 0; m < signal.size(); ++m) {
-            sim::RandomStream stream({f, sim::Effect::read_noise, 0, static_cast<std::uint32_t>(m)});
+            sim::RandomStream stream({f, sim::Draws::read_noise, 0, static_cast<std::uint32_t>(m)});
             samples.back().push_back(static_cast<float>(signal[m] + sigma * stream.gaussian()));
           }
         }

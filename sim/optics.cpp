@@ -123,9 +123,10 @@ hal::Result<void> Optics::validate() const {
 hal::Result<std::vector<double>> Optics::expose(const Scene& scene) const {
   TRY(validate());
   TRY(sim::validate(scene));
-  const PictureIntegral picture(scene);
+  const Surface& sheet = scene.surfaces.front();
+  const PictureIntegral picture(sheet);
   const double front_mm = eye.radius_mm + eye.lens_height_mm;
-  const double scene_z = front_mm + scene.distance_mm.value_or(object.distance_mm);
+  const double scene_z = front_mm + sheet.distance_mm.value_or(object.distance_mm);
   const double pixel_area = object.pixel_width_mm() * object.pixel_height_mm();
   const CellDensity density{std::max(cells_per_pixel / object.pixel_width_mm(), 1.0 / picture.pixel_width_mm()),
                             std::max(cells_per_pixel / object.pixel_height_mm(), 1.0 / picture.pixel_height_mm())};

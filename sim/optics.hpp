@@ -5,7 +5,7 @@
 #include "hal/eye_geometry.hpp"
 #include "hal/result.hpp"
 #include "sim/angular_profile.hpp"
-#include "sim/scene.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace compueye::sim {
 

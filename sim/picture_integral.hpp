@@ -2,15 +2,15 @@
 
 #include <vector>
 
-#include "sim/scene.hpp"
+#include "sim/scene/surface.hpp"
 
 namespace compueye::sim {
 
-/// Running integrals along each row of a scene's picture, so that the light on any piece of a scanline costs two
+/// Running integrals along each row of a surface's picture, so that the light on any piece of a scanline costs two
 /// look-ups whatever its length.
 class PictureIntegral {
  public:
-  explicit PictureIntegral(const Scene& scene);
+  explicit PictureIntegral(const Surface& surface);
 
   [[nodiscard]] int rows() const noexcept { return rows_; }
   [[nodiscard]] double left_mm() const noexcept { return left_; }

@@ -93,7 +93,7 @@ double normal_quantile(double p) noexcept {
 
 std::uint64_t RandomStream::next_bits() noexcept {
   if (left_ == 0) {
-    const std::uint32_t which = (static_cast<std::uint32_t>(key_.effect) << 16) | (block_ & 0xFFFFU);
+    const std::uint32_t which = (static_cast<std::uint32_t>(key_.draws) << 16) | (block_ & 0xFFFFU);
     const auto words = philox4x32(
         {key_.channel, which, static_cast<std::uint32_t>(key_.frame), static_cast<std::uint32_t>(key_.frame >> 32)},
         {static_cast<std::uint32_t>(key_.seed), static_cast<std::uint32_t>(key_.seed >> 32)});

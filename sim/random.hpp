@@ -2,20 +2,28 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 namespace compueye::sim {
 
 /// Who draws. Values are part of what a seed means: append, never renumber.
-enum class Effect : std::uint16_t {
+enum class Draws : std::uint16_t {
   picture = 1,     ///< built-in scenes; frame = which picture, channel = which part of it
   read_noise = 2,  ///< one draw a channel and frame
 };
+
+/// Who draws by a name of its own: an effect. Two names of the list of effects give two values (tested).
+[[nodiscard]] constexpr Draws draws_of(std::string_view name) noexcept {
+  std::uint32_t hash = 2166136261U;  // FNV-1a
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+  return static_cast<Draws>(0x8000U | ((hash ^ (hash >> 16U)) & 0x7FFFU));
+}
 
 /// Names one random stream. Two keys that differ anywhere give independent streams, so switching one effect, skipping
 /// a frame or removing a channel never changes what the others draw.
 struct StreamKey {
   std::uint64_t seed = 0;
-  Effect effect = Effect::picture;
+  Draws draws = Draws::picture;
   std::uint64_t frame = 0;
   std::uint32_t channel = 0;
 };

@@ -22,7 +22,7 @@ void add_dark_level(const SensorSettings& settings, SensorFrame& frame) noexcept
 void add_read_noise(const SensorSettings& settings, SensorFrame& frame) noexcept {
   if (settings.read_noise_lsb == 0.0) return;
   for (std::size_t channel = 0; channel < frame.levels_lsb.size(); ++channel) {
-    RandomStream random({frame.seed, Effect::read_noise, frame.frame, static_cast<std::uint32_t>(channel)});
+    RandomStream random({frame.seed, Draws::read_noise, frame.frame, static_cast<std::uint32_t>(channel)});
     frame.levels_lsb[channel] += settings.read_noise_lsb * random.gaussian();
   }
 }

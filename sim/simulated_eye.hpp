@@ -13,7 +13,7 @@
 #include "hal/sensor_settings.hpp"
 #include "sim/device_faults.hpp"
 #include "sim/optics.hpp"
-#include "sim/scene.hpp"
+#include "sim/scene/scene.hpp"
 #include "sim/sensor.hpp"
 
 namespace compueye::sim {

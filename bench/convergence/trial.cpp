@@ -79,7 +79,7 @@ std::vector<Sample> draw_samples(const recon::Response& response, const Eye& eye
     const double by_snr = std::sqrt(power / response.rows()) * std::pow(10.0, -scenes.snr_db / 20.0);
     Sample sample{truth.pixels, {}, scenes.sigma.value_or(by_snr)};
     for (std::size_t m = 0; m < signal.size(); ++m) {
-      sim::RandomStream stream({seed, sim::Effect::read_noise, 0, static_cast<std::uint32_t>(m)});
+      sim::RandomStream stream({seed, sim::Draws::read_noise, 0, static_cast<std::uint32_t>(m)});
       sample.y.push_back(static_cast<float>(signal[m] + sample.sigma * stream.gaussian()));
     }
     samples.push_back(std::move(sample));

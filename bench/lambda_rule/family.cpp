@@ -37,7 +37,7 @@ double seconds_now() {
 }
 
 float sign_of(std::size_t m) {
-  sim::RandomStream random({99, sim::Effect::read_noise, 1, static_cast<std::uint32_t>(m)});
+  sim::RandomStream random({99, sim::Draws::read_noise, 1, static_cast<std::uint32_t>(m)});
   return random.uniform() < .5 ? -1.0F : 1.0F;
 }
 
@@ -163,7 +163,7 @@ class FamilyEye {
     }
     frame.sigma = std::sqrt(squares / static_cast<double>(seeing_.size())) * std::pow(10.0, -snr_db / 20.0);
     for (std::size_t m = 0; m < signal.size(); ++m) {
-      sim::RandomStream random({seed, sim::Effect::read_noise, 0, static_cast<std::uint32_t>(m)});
+      sim::RandomStream random({seed, sim::Draws::read_noise, 0, static_cast<std::uint32_t>(m)});
       frame.y.push_back(static_cast<float>(signal[m] + frame.sigma * random.gaussian()));
     }
     return frame;

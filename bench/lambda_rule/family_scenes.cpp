@@ -62,7 +62,7 @@ std::vector<std::string> family_scenes() {
 }
 
 hal::Image family_picture(const std::string& name, int rows, int cols, std::uint64_t seed) {
-  sim::RandomStream random({seed, sim::Effect::picture, 0, 4242});
+  sim::RandomStream random({seed, sim::Draws::picture, 0, 4242});
   if (name == "texture") return texture(rows, cols, random);
   if (name == "half-plane") return half_plane(rows, cols, random);
   return sim::render_built_in(name, rows, cols, seed).value();

@@ -87,7 +87,7 @@ std::vector<float> SweptEye::samples(const std::string& scene, const hal::Image&
   }
   std::vector<float> y(signal.size());
   for (std::size_t m = 0; m < y.size(); ++m) {
-    sim::RandomStream stream({seed, sim::Effect::read_noise, 0, static_cast<std::uint32_t>(m)});
+    sim::RandomStream stream({seed, sim::Draws::read_noise, 0, static_cast<std::uint32_t>(m)});
     y[m] = static_cast<float>(signal[m] + sigma * stream.gaussian());
   }
   return y;

@@ -36,13 +36,14 @@ bool looks_like_a_file(const fs::path& path) {
 /// The largest rectangle of the picture's own shape within the plane.
 sim::Scene fitted(const hal::ObjectPlane& object, std::string name, hal::Image picture) {
   const double pixel_mm = std::min(object.width_mm / picture.cols, object.height_mm / picture.rows);
-  sim::Scene scene{std::move(name), std::move(picture), 0.0, 0.0, std::nullopt};
+  sim::Scene scene = sim::scene_on(object, std::move(name), std::move(picture));
+  sim::Surface& sheet = scene.surfaces.front();
   // Not through pixel_mm where a side is filled, so that a picture of the plane's own size stays exactly on its pixels.
   const auto filled = [](double side_mm, double length_mm) {
     return length_mm > side_mm * (1.0 - 1e-12) ? side_mm : length_mm;
   };
-  scene.width_mm = filled(object.width_mm, pixel_mm * scene.picture.cols);
-  scene.height_mm = filled(object.height_mm, pixel_mm * scene.picture.rows);
+  sheet.width_mm = filled(object.width_mm, pixel_mm * sheet.picture().cols);
+  sheet.height_mm = filled(object.height_mm, pixel_mm * sheet.picture().rows);
   return scene;
 }
 
@@ -71,7 +72,7 @@ hal::Result<sim::Scene> choose_scene(const Board& board, const SceneChoice& choi
     if (from_board && !file) scene.error().place = board.place("scene", "default");
     return scene;
   }
-  scene->distance_mm = choice.distance_mm;
+  scene->surfaces.front().distance_mm = choice.distance_mm;
   return scene;
 }
 

@@ -6,7 +6,7 @@
 
 #include "firmware/eye/board.hpp"
 #include "hal/result.hpp"
-#include "sim/scene.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace compueye::firmware {
 

@@ -8,7 +8,7 @@
 #include "firmware/pipeline/correction.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
-#include "sim/scene.hpp"
+#include "sim/scene/scene.hpp"
 #include "sim/simulated_eye.hpp"
 
 namespace compueye::firmware {

@@ -11,7 +11,7 @@
 #include "hal/byte_transport.hpp"
 #include "hal/clock.hpp"
 #include "hal/sample_source.hpp"
-#include "sim/scene.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace compueye::firmware {
 

@@ -21,7 +21,7 @@ hal::Image bars(int rows, int cols, std::uint64_t seed) {
     fields[i] = {widths[(line / 2) * 4 + column], line % 2 == 0};
   }
   if (seed != 0) {
-    RandomStream random({seed, Effect::picture, 0, 3});
+    RandomStream random({seed, Draws::picture, 0, 3});
     for (std::size_t i = fields.size() - 1; i > 0; --i) {
       std::swap(fields[i], fields[random.below(static_cast<std::uint32_t>(i + 1))]);
     }

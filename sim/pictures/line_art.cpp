@@ -14,7 +14,7 @@ constexpr double ink = 0.23;  // share of non-zero pixels
 
 // A gentle bend of the whole sheet, so that every seed is another drawing and every drawing still hangs together.
 void bend(Strokes& strokes, std::uint64_t seed) {
-  RandomStream random({seed, Effect::picture, 0, 1});
+  RandomStream random({seed, Draws::picture, 0, 1});
   const bool mirrored = random.below(2) == 1;
   const double scale = random.uniform(0.9, 0.98);
   const double turn = random.uniform(-0.06, 0.06);  // tan of half the angle

@@ -33,7 +33,7 @@ constexpr std::array<Ellipse, 10> head{{
 
 std::array<Ellipse, 10> varied_head(std::uint64_t seed) {
   std::array<Ellipse, 10> ellipses = head;
-  RandomStream random({seed, Effect::picture, 0, 2});
+  RandomStream random({seed, Draws::picture, 0, 2});
   // Skull and brain keep their proportions, so that the rim stays closed; what lies inside moves freely.
   const double wider = random.uniform(0.95, 1.05), higher = random.uniform(0.95, 1.03);
   for (Ellipse& e : ellipses) {

@@ -14,7 +14,7 @@
 #include "hal/try.hpp"
 #include "sim/optics.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
-#include "sim/scene_truth.hpp"
+#include "sim/scene/scene_truth.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -41,7 +41,7 @@ Result<EvaluationScene> drawn(const Board& board, const sim::Optics& optics, con
   EvaluationScene drawing{name, seed, TRY(sim::scene_truth(scene, board.object)), TRY(optics.expose(scene)), {}};
   for (std::size_t left = moving_frames; moving && left > 0; --left) {
     sim::Scene earlier = scene;
-    earlier.picture = before_arrival(scene.picture, left);
+    earlier.surfaces.front().bands = {before_arrival(scene.surfaces.front().picture(), left)};
     drawing.moving.push_back(TRY(optics.expose(earlier)));
   }
   return drawing;

@@ -14,7 +14,7 @@
 #include "hal/clock.hpp"
 #include "hal/try.hpp"
 #include "sim/random.hpp"
-#include "sim/scene_truth.hpp"
+#include "sim/scene/scene_truth.hpp"
 #include "sim/simulated_eye.hpp"
 
 namespace compueye::firmware {
@@ -41,7 +41,7 @@ void take_exact(double sigma, std::uint64_t seed, CompareSamples& samples) {
   std::vector<double> y(static_cast<std::size_t>(samples.response.rows()));
   samples.response.forward(x, y);
   for (std::size_t m = 0; m < y.size(); ++m) {
-    sim::RandomStream stream({seed, sim::Effect::read_noise, 0, static_cast<std::uint32_t>(m)});
+    sim::RandomStream stream({seed, sim::Draws::read_noise, 0, static_cast<std::uint32_t>(m)});
     samples.y.push_back(static_cast<float>(y[m] + sigma * stream.gaussian()));
   }
   samples.weights.assign(samples.y.size(), 1.0F);

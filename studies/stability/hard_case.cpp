@@ -13,7 +13,7 @@ namespace {
 /// A dark ground with a bright bar across it and some lit pixels: flat areas, edges and points.
 std::vector<double> picture_of(const recon::Response& a, std::uint64_t seed) {
   constexpr double ground = 0.1, bar = 0.8, lit_share = 0.08;
-  sim::RandomStream stream({seed, sim::Effect::picture, 1, 0});
+  sim::RandomStream stream({seed, sim::Draws::picture, 1, 0});
   const int rows = a.image_rows(), cols = a.image_cols();
   std::vector<double> x;
   for (int r = 0; r < rows; ++r) {
@@ -44,7 +44,7 @@ HardProblem pose(const HardCase& hard, const recon::Response& eye, std::uint64_t
   problem.rms = rms_of(y, seeing.size());
   const double sigma = problem.rms * std::pow(10.0, -hard.snr_db / 20.0);
   for (std::size_t m = 0; m < y.size(); ++m) {
-    sim::RandomStream noise({seed, sim::Effect::read_noise, 0, static_cast<std::uint32_t>(m)});
+    sim::RandomStream noise({seed, sim::Draws::read_noise, 0, static_cast<std::uint32_t>(m)});
     const double drawn = sigma * noise.gaussian();
     const bool sees = std::binary_search(seeing.begin(), seeing.end(), static_cast<std::int32_t>(m));
     problem.y.push_back(static_cast<float>(sees ? y[m] + drawn : y[m]));

@@ -58,7 +58,7 @@ Response response_of(const DenseRows& dense, const Response& like) {
 
 class Draws {
  public:
-  explicit Draws(std::uint64_t seed) : stream_({seed, sim::Effect::picture, 0, 0}) {}
+  explicit Draws(std::uint64_t seed) : stream_({seed, sim::Draws::picture, 0, 0}) {}
   double about_one(double amount) { return 1.0 + amount * stream_.gaussian(); }
   double uniform(double lo, double hi) { return stream_.uniform(lo, hi); }
 

@@ -73,7 +73,7 @@ void one_channel(HardProblem& problem, double) {
 }
 
 void unrelated(HardProblem& problem, double amount) {
-  sim::RandomStream stream({7, sim::Effect::read_noise, 0, 0});
+  sim::RandomStream stream({7, sim::Draws::read_noise, 0, 0});
   for (float& value : problem.y) value = static_cast<float>(amount * problem.rms * stream.gaussian());
 }
 

@@ -61,7 +61,7 @@ std::vector<float> samples(const recon::Response& response, const hal::Image& pi
   response.forward(x, signal);
   std::vector<float> y(signal.size());
   for (std::size_t m = 0; m < y.size(); ++m) {
-    sim::RandomStream noise({seed, sim::Effect::read_noise, 0, static_cast<std::uint32_t>(m)});
+    sim::RandomStream noise({seed, sim::Draws::read_noise, 0, static_cast<std::uint32_t>(m)});
     y[m] = static_cast<float>(signal[m] + sigma * noise.gaussian());
   }
   return y;

@@ -48,7 +48,7 @@ void check_chord(const hal::Vec3& axis, double half_angle, double depth, double 
 }  // namespace
 
 TEST_CASE("chords agree with the angle between ray and axis, for any axis and acceptance") {
-  sim::RandomStream random({1, sim::Effect::picture, 0, 99});
+  sim::RandomStream random({1, sim::Draws::picture, 0, 99});
   for (int i = 0; i < 400; ++i) {
     hal::Vec3 d{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
     const double n = std::hypot(d.x, d.y, d.z);

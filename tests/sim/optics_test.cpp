@@ -51,16 +51,17 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 
 // The cone itself, point by point: `n` x `n` points in every scene pixel, no conic and no chord.
 double sampled_signal(const Optics& optics, const Scene& scene, int i, int k, int n) {
+  const sim::Surface& sheet = scene.surfaces[0];
   const hal::Vec3 apex = optics.eye.apex(i, k), axis = optics.eye.axis(i, k);
   const double z = optics.object.z_mm(optics.eye) - apex.z;
-  const double pitch_x = scene.width_mm / scene.picture.cols, pitch_y = scene.height_mm / scene.picture.rows;
+  const double pitch_x = sheet.width_mm / sheet.picture().cols, pitch_y = sheet.height_mm / sheet.picture().rows;
   double sum = 0.0;
-  for (int row = 0; row < scene.picture.rows * n; ++row) {
-    const double y = scene.height_mm / 2.0 - (row + 0.5) * pitch_y / n - apex.y;
-    for (int col = 0; col < scene.picture.cols * n; ++col) {
-      const double x = (col + 0.5) * pitch_x / n - scene.width_mm / 2.0 - apex.x;
+  for (int row = 0; row < sheet.picture().rows * n; ++row) {
+    const double y = sheet.height_mm / 2.0 - (row + 0.5) * pitch_y / n - apex.y;
+    for (int col = 0; col < sheet.picture().cols * n; ++col) {
+      const double x = (col + 0.5) * pitch_x / n - sheet.width_mm / 2.0 - apex.x;
       const double angle = std::acos((x * axis.x + y * axis.y + z * axis.z) / std::sqrt(x * x + y * y + z * z));
-      if (angle <= optics.eye.acceptance_rad / 2.0) sum += static_cast<double>(scene.picture.at(row / n, col / n));
+      if (angle <= optics.eye.acceptance_rad / 2.0) sum += static_cast<double>(sheet.picture().at(row / n, col / n));
     }
   }
   return sum * pitch_x * pitch_y / (n * n) / (optics.object.pixel_width_mm() * optics.object.pixel_height_mm());
@@ -174,15 +175,16 @@ TEST_CASE("a scene at another distance is seen along the rays") {
   optics.eye.rows = optics.eye.columns = 1;  // its apex is on the axis, so scaling about it keeps every ray
   Scene scene = scene_on(optics.object, "fig2", picture_of("fig2", optics.object));
   const double near = optics.expose(scene).value()[0];
-  scene.width_mm *= 2.5;
-  scene.height_mm *= 2.5;
-  scene.distance_mm = 2.5 * optics.object.distance_mm;
+  scene.surfaces[0].width_mm *= 2.5;
+  scene.surfaces[0].height_mm *= 2.5;
+  scene.surfaces[0].distance_mm = 2.5 * optics.object.distance_mm;
   CHECK(optics.expose(scene).value()[0] == doctest::Approx(near).epsilon(1e-4));
 
   optics = small_eye();
-  Scene white{"white", hal::Image(2, 2, 1.0F), 200.0, 200.0, std::nullopt};
+  Scene white = scene_on(optics.object, "white", hal::Image(2, 2, 1.0F));
+  white.surfaces[0].width_mm = white.surfaces[0].height_mm = 200.0;
   const std::vector<double> at_plane = optics.expose(white).value();
-  white.distance_mm = 11.0;
+  white.surfaces[0].distance_mm = 11.0;
   CHECK(largest_difference(optics.expose(white).value(), at_plane) < 1e-3 * at_plane[0]);
 }
 

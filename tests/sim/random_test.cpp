@@ -32,10 +32,10 @@ TEST_CASE("the normal quantile inverts the distribution function in its middle a
 TEST_CASE("streams that differ in one part of their key differ, equal keys repeat") {
   std::set<std::uint64_t> firsts;
   for (const StreamKey& key :
-       {StreamKey{1, Effect::read_noise, 2, 3}, StreamKey{2, Effect::read_noise, 2, 3},
-        StreamKey{1, Effect::picture, 2, 3}, StreamKey{1, Effect::read_noise, 3, 3},
-        StreamKey{1, Effect::read_noise, 2, 4}, StreamKey{(1ULL << 40) + 1, Effect::read_noise, 2, 3},
-        StreamKey{1, Effect::read_noise, (1ULL << 40) + 2, 3}}) {
+       {StreamKey{1, Draws::read_noise, 2, 3}, StreamKey{2, Draws::read_noise, 2, 3},
+        StreamKey{1, Draws::picture, 2, 3}, StreamKey{1, Draws::read_noise, 3, 3},
+        StreamKey{1, Draws::read_noise, 2, 4}, StreamKey{(1ULL << 40) + 1, Draws::read_noise, 2, 3},
+        StreamKey{1, Draws::read_noise, (1ULL << 40) + 2, 3}}) {
     RandomStream a(key), b(key);
     firsts.insert(a.next_bits());
     CHECK(b.next_bits() == *firsts.find(RandomStream(key).next_bits()));
@@ -49,7 +49,7 @@ TEST_CASE("draws have the moments of their distribution") {
   double sum = 0.0, sum2 = 0.0, sum4 = 0.0, uniform_sum = 0.0;
   std::array<int, 7> below{};
   for (int i = 0; i < n; ++i) {
-    RandomStream random({42, Effect::read_noise, 0, static_cast<std::uint32_t>(i)});
+    RandomStream random({42, Draws::read_noise, 0, static_cast<std::uint32_t>(i)});
     const double z = random.gaussian();
     sum += z;
     sum2 += z * z;

@@ -1,4 +1,4 @@
-#include "sim/scene.hpp"
+#include "sim/scene/scene.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "sim/pictures/built_in_scenes.hpp"
-#include "sim/scene_truth.hpp"
+#include "sim/scene/scene_truth.hpp"
 #include "tests/hal/error_check.hpp"
 
 using namespace compueye;
@@ -68,13 +68,16 @@ TEST_CASE("the truth keeps the light at resolutions that do not divide") {
 
 TEST_CASE("the truth is black beyond a small scene and cuts a large one") {
   const hal::ObjectPlane object = plane(4, 4, 4.0, 4.0);
-  const sim::Scene small{"white", hal::Image(5, 5, 1.0F), 2.0, 3.0, std::nullopt};
+  sim::Scene small = sim::scene_on(object, "white", hal::Image(5, 5, 1.0F));
+  small.surfaces[0].width_mm = 2.0;
+  small.surfaces[0].height_mm = 3.0;
   const hal::Image truth = sim::scene_truth(small, object).value();
   CHECK(truth.at(1, 0) == 0.0F);
   CHECK(truth.at(1, 1) == doctest::Approx(1.0));
   CHECK(truth.at(0, 1) == doctest::Approx(0.5));
   CHECK(mean(truth) * 16.0 == doctest::Approx(6.0));
-  const sim::Scene large{"white", hal::Image(3, 3, 0.25F), 40.0, 40.0, std::nullopt};
+  sim::Scene large = sim::scene_on(object, "white", hal::Image(3, 3, 0.25F));
+  large.surfaces[0].width_mm = large.surfaces[0].height_mm = 40.0;
   const hal::Image grey = sim::scene_truth(large, object).value();
   for (const float pixel : grey.pixels) CHECK(pixel == doctest::Approx(0.25));
 }
@@ -87,24 +90,25 @@ TEST_CASE("a scene that cannot be shown is refused with its name and the offendi
   };
   refused(sim::scene_on(object, "empty", hal::Image()), ErrorCode::out_of_range, {"0x0"});
   sim::Scene scene = sim::scene_on(object, "broken", hal::Image(3, 4, 0.5F));
+  sim::Surface& sheet = scene.surfaces[0];
   CHECK(sim::validate(scene).has_value());
   for (const auto& [bad, text] : {std::pair{-0.1F, "-0.1"}, std::pair{std::numeric_limits<float>::quiet_NaN(), "nan"},
                                   std::pair{std::numeric_limits<float>::infinity(), "inf"}}) {
-    scene.picture.at(1, 2) = bad;
+    sheet.bands[0].at(1, 2) = bad;
     refused(scene, ErrorCode::out_of_range, {"(1, 2)", text});
   }
-  scene.picture = hal::Image(3, 4, 0.5F);
-  scene.picture.pixels.pop_back();
+  sheet.bands[0] = hal::Image(3, 4, 0.5F);
+  sheet.bands[0].pixels.pop_back();
   refused(scene, ErrorCode::mismatch, {"11", "3x4"});
-  scene.picture = hal::Image(3, 4, 0.5F);
-  scene.width_mm = 0.0;
+  sheet.bands[0] = hal::Image(3, 4, 0.5F);
+  sheet.width_mm = 0.0;
   refused(scene, ErrorCode::out_of_range, {"width_mm", "0"});
-  scene.width_mm = -0.5;
+  sheet.width_mm = -0.5;
   refused(scene, ErrorCode::out_of_range, {"width_mm", "-0.5"});
-  scene.width_mm = 1.0;
-  scene.height_mm = std::numeric_limits<double>::infinity();
+  sheet.width_mm = 1.0;
+  sheet.height_mm = std::numeric_limits<double>::infinity();
   refused(scene, ErrorCode::out_of_range, {"height_mm", "inf"});
-  scene.height_mm = 1.0;
-  scene.distance_mm = -3.0;
+  sheet.height_mm = 1.0;
+  sheet.distance_mm = -3.0;
   refused(scene, ErrorCode::out_of_range, {"distance_mm", "-3"});
 }

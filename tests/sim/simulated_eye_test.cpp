@@ -378,7 +378,8 @@ TEST_CASE("settings that make no sense are refused by name") {
   refused(ErrorCode::out_of_range, "sensor.bits", {"40", "24"}, [](S& s) { s.sensor.bits = 40; });
   refused(ErrorCode::not_found, "sensor step", {"reed-noise"}, [](S& s) { s.steps_off = {"reed-noise"}; });
   refused(ErrorCode::out_of_range, "eye.rows", {"0", "4096"}, [](S& s) { s.optics.eye.rows = 0; });
-  refused(ErrorCode::out_of_range, "fig2", {"(0, 3)", "-1"}, [](S& s) { s.scenes[0].picture.pixels[3] = -1.0F; });
+  refused(ErrorCode::out_of_range, "fig2", {"(0, 3)", "-1"},
+          [](S& s) { s.scenes[0].surfaces[0].bands[0].pixels[3] = -1.0F; });
   refused(ErrorCode::out_of_range, "faults.invalid_channels", {"64", "63"}, [](S& s) {
     s.faults.invalid_channels = {{64, 0}};
   });

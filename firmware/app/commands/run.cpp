@@ -32,7 +32,7 @@
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "firmware/sinks/live_status.hpp"
 #include "hal/try.hpp"
-#include "sim/scene_truth.hpp"
+#include "sim/scene/scene_truth.hpp"
 
 namespace compueye::firmware {
 namespace {

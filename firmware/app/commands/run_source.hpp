@@ -13,7 +13,7 @@
 #include "firmware/eye/ready_eye.hpp"
 #include "hal/clock.hpp"
 #include "hal/sample_source.hpp"
-#include "sim/scene.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace compueye::firmware {
 

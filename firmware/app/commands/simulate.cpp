@@ -21,7 +21,7 @@
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
 #include "hal/try.hpp"
-#include "sim/scene_truth.hpp"
+#include "sim/scene/scene_truth.hpp"
 #include "sim/simulated_eye.hpp"
 
 namespace compueye::firmware {
@@ -68,10 +68,11 @@ class Effects {
 Effects::Effects(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
   const hal::SensorSettings& s = board.sensor;
   const bool sensor = !o.noise_free || o.codes;
-  const bool away = scene.distance_mm && *scene.distance_mm != board.object.distance_mm;
+  const std::optional<double> distance = scene.surfaces.front().distance_mm;
+  const bool away = distance && *distance != board.object.distance_mm;
   add("acceptance cone", true, "flat top, light integrated below pixel size");
   add("scene off the object plane", away,
-      away ? significant(*scene.distance_mm, 4) + " mm instead of " + significant(board.object.distance_mm, 4) : "");
+      away ? significant(*distance, 4) + " mm instead of " + significant(board.object.distance_mm, 4) : "");
   add("dark level", sensor && s.dark_level_lsb > 0.0,
       significant(s.dark_level_lsb, 4) + " LSB" + (o.codes ? "" : ", taken out again"));
   add("read noise", !o.noise_free && s.read_noise_lsb > 0.0, significant(s.read_noise_lsb, 4) + " LSB");

@@ -1,4 +1,4 @@
-#include "sim/scene_truth.hpp"
+#include "sim/scene/scene_truth.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,13 +38,14 @@ std::vector<Overlap> overlaps(int sources, double source_size, int targets, doub
 hal::Result<hal::Image> scene_truth(const Scene& scene, const hal::ObjectPlane& object) {
   TRY(validate(scene));
   TRY(object.validate());
-  const hal::Image& picture = scene.picture;
-  if (picture.rows == object.rows && picture.cols == object.cols && scene.width_mm == object.width_mm &&
-      scene.height_mm == object.height_mm) {
+  const Surface& sheet = scene.surfaces.front();
+  const hal::Image& picture = sheet.picture();
+  if (picture.rows == object.rows && picture.cols == object.cols && sheet.width_mm == object.width_mm &&
+      sheet.height_mm == object.height_mm) {
     return picture;
   }
-  const auto across = overlaps(picture.cols, scene.width_mm, object.cols, object.width_mm);
-  const auto down = overlaps(picture.rows, scene.height_mm, object.rows, object.height_mm);
+  const auto across = overlaps(picture.cols, sheet.width_mm, object.cols, object.width_mm);
+  const auto down = overlaps(picture.rows, sheet.height_mm, object.rows, object.height_mm);
   std::vector<double> sums(static_cast<std::size_t>(object.pixels()), 0.0);
   for (const Overlap& v : down) {
     for (const Overlap& u : across) {

@@ -3,7 +3,7 @@
 #include "hal/eye_geometry.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
-#include "sim/scene.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace compueye::sim {
 

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/effects/effect.hpp"
+#include "sim/plan/sensitivity.hpp"
+
+namespace compueye::sim {
+
+enum class Decision {
+  on,          ///< called for, and too large to be left out
+  left_out,    ///< called for, and small enough
+  not_called,  ///< nothing of the scene or the board calls for it
+  forced_on,
+  forced_off,
+};
+
+[[nodiscard]] std::string_view name(Decision decision) noexcept;
+
+struct PlannedEffect {
+  const Effect* effect = nullptr;
+  std::string called_for_by;  ///< empty: by nothing
+  double bound_lsb = 0.0;     ///< rms of what leaving it out changes at most; 0 when nothing calls for it
+  double nmse = 0.0;          ///< what that adds to the reconstruction's NMSE at most: kappa (bound / rms of samples)^2
+  EffectCost cost;
+  Decision decision = Decision::not_called;
+
+  [[nodiscard]] bool on() const noexcept { return decision == Decision::on || decision == Decision::forced_on; }
+};
+
+/// Which effects a scene before a board gets, and why.
+struct Plan {
+  std::vector<PlannedEffect> effects;  ///< all there are, in the order of light
+  double noise_lsb = 0.0;              ///< read noise, shot noise and rounding: rms over the channels
+  double noise_nmse = 0.0;             ///< what that alone makes of the reconstruction
+  double left_out_nmse = 0.0;          ///< sum over what is left out, at most share_left_out times noise_nmse
+  double left_out_lsb = 0.0;           ///< rms of the sum of all left out, at most: sum of the bounds
+  Sensitivity sensitivity;
+
+  [[nodiscard]] const PlannedEffect& of(std::string_view effect) const;
+};
+
+/// What is left out may add this share of what the noise itself makes of a reconstruction.
+inline constexpr double share_left_out = 0.1;
+
+enum class PlanMode { automatic, everything, nothing };
+
+/// Leaves out the effects that save most time for their error, while what they add up to stays within the share; what
+/// the scene forces is as it says. `everything`: all that are called for; `nothing`: none but what has no noise.
+[[nodiscard]] Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensitivity,
+                                PlanMode mode = PlanMode::automatic);
+
+}  // namespace compueye::sim

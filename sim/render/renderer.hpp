@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "hal/eye_geometry.hpp"
+#include "hal/result.hpp"
+#include "sim/render/optics_as_built.hpp"
+#include "sim/render/render_settings.hpp"
+#include "sim/scene/scene.hpp"
+
+namespace compueye::sim {
+
+/// Integrates the light of a scene over the cones of every ommatidium, below any pixel size and to a stated error; it
+/// knows nothing of the pixels that a reconstruction will use.
+///
+/// Signal of an ommatidium: sum over its cones of weight times the integral of the radiance that arrives along the rays
+/// within the cone, each ray weighing as the piece of the object plane that it meets (Lee et al., "COMPU-EYE", Optics
+/// Express 24 (2016)), times cos^obliquity of its angle from z; unit: one pixel of the object plane at white. Radiance
+/// does not change along a ray: what is white and fills the cone gives the same signal at any distance and tilt.
+class Renderer {
+ public:
+  /// `scene` must outlive it. Errors: those of validate(scene), and out_of_range or unsupported with the surface's
+  /// name: a surface that reaches into the eye (behind the plane of the lens tip) at t = 0, a tolerance out of reach.
+  [[nodiscard]] static hal::Result<Renderer> create(const hal::EyeGeometry& eye, const hal::ObjectPlane& object,
+                                                    OpticsAsBuilt optics, const RenderSettings& settings,
+                                                    const Scene& scene);
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+  ~Renderer();
+
+  /// The M noise-free signals at `t_s`. What did not move since the last call costs nothing; does not allocate after
+  /// the first call. A surface that has come into the eye is left out of the picture.
+  void render(double t_s, std::span<double> signals);
+
+  /// Surfaces integrated by the last render() (0: everything was as before).
+  [[nodiscard]] int surfaces_rendered() const noexcept;
+
+ private:
+  struct Parts;
+  explicit Renderer(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace compueye::sim

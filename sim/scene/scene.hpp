@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "hal/eye_geometry.hpp"
+#include "hal/image.hpp"
+#include "hal/result.hpp"
+#include "sim/scene/surface.hpp"
+
+namespace compueye::sim {
+
+/// What lights the surfaces that do not shine by themselves.
+struct Light {
+  double level = 1.0;           ///< 0 .. 1000; a picture's 1 gives level at the middle of the object plane
+  double falloff = 0.0;         ///< share of the light lost at the object plane's corner, as the square of the distance
+  double drift_per_hour = 0.0;  ///< relative change of the lamp's light, linear in time
+  double mains_hz = 0.0;        ///< 0, or 40 .. 500: light of the mains flickers at twice that
+  double flicker_depth = 0.0;   ///< 0 .. 1: level (1 + depth sin(2 pi 2 mains t))
+  std::array<double, 3> spectrum{1.0, 1.0, 1.0};  ///< red, green, blue; >= 0, not all 0
+};
+
+/// What a display does to the pictures of the surfaces that shine.
+struct Display {
+  double gamma = 1.0;        ///< shown = black_level + (1 - black_level) picture^gamma, 0.2 .. 5
+  double black_level = 0.0;  ///< 0 .. 0.9
+  double refresh_hz = 0.0;   ///< what moves on it moves in steps of 1/refresh; 0: at once
+  double pixel_blur = 0.0;   ///< of a pixel's width over which it runs into its neighbour, 0 .. 1
+};
+
+enum class Forced { off, on };
+
+/// What stands before the eye, and how it changes.
+struct Scene {
+  std::string name;
+  std::vector<Surface> surfaces;  ///< at least one
+  Light light;
+  Display display;
+  double duration_s = 0.0;                     ///< after which it begins anew; 0: it goes on for ever
+  std::map<std::string, Forced> effects = {};  ///< by an effect's name: what is not the planner's to decide
+
+  [[nodiscard]] bool still() const noexcept;
+};
+
+/// The picture stretched over the whole object plane.
+[[nodiscard]] Scene scene_on(const hal::ObjectPlane& object, std::string name, hal::Image picture);
+
+/// Errors: usage (no surface), mismatch (rows, columns and number of pixels disagree; bands of several sizes),
+/// out_of_range (empty, a size, distance or rate outside its range, a pixel that is negative, NaN or infinite, named by
+/// row and column). The place is the surface's name or the scene's.
+[[nodiscard]] hal::Result<void> validate(const Scene& scene);
+
+}  // namespace compueye::sim

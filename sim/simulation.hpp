@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "sim/effects/circumstances.hpp"
+#include "sim/plan/plan.hpp"
+
+namespace compueye::sim {
+
+/// From a scene before an eye to the codes of each frame, by the planned effects and nothing else. Same settings and
+/// frame number, same codes, whatever was asked for before.
+class Simulation {
+ public:
+  /// Renders the first frame, so it may take seconds. Errors: those of the settings' parts.
+  [[nodiscard]] static hal::Result<Simulation> create(EyeToSimulate board, Scene scene, std::uint64_t seed,
+                                                      const Sensitivity& sensitivity,
+                                                      PlanMode mode = PlanMode::automatic);
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
+
+  [[nodiscard]] const Plan& plan() const noexcept;
+  [[nodiscard]] const EyeToSimulate& board() const noexcept;
+
+  /// The codes of frame `frame`, M of them; true when at least one channel reached the largest code.
+  [[nodiscard]] bool codes(std::uint64_t frame, std::span<std::int32_t> codes);
+
+  /// The same before noise, dark level and rounding: what the optics deliver, in fully seen pixels at white.
+  [[nodiscard]] std::span<const double> noise_free(std::uint64_t frame);
+
+ private:
+  struct Parts;
+  explicit Simulation(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace compueye::sim
