@@ -27,6 +27,9 @@ class Simulation {
   /// The codes of frame `frame`, M of them; true when at least one channel reached the largest code.
   [[nodiscard]] bool codes(std::uint64_t frame, std::span<std::int32_t> codes);
 
+  /// The same before they are rounded and clipped, in LSB.
+  [[nodiscard]] std::span<const double> levels_lsb(std::uint64_t frame);
+
   /// The same before noise, dark level and rounding: what the optics deliver, in fully seen pixels at white.
   [[nodiscard]] std::span<const double> noise_free(std::uint64_t frame);
 

@@ -13,8 +13,8 @@ namespace compueye::sim {
 /// One frame on its way from light to codes.
 struct FrameInWork {
   std::uint64_t frame = 0;
-  double t_s = 0.0;                     ///< start of its exposure, seconds after the scene's beginning
-  std::span<double> levels_lsb;         ///< M levels, unrounded, changed in place
+  double t_s = 0.0;              ///< start of its exposure, seconds after frame 0; goes on where the scene begins anew
+  std::span<double> levels_lsb;  ///< M levels, unrounded, changed in place
   std::span<std::int32_t> stuck_codes;  ///< M; >= 0: this code is read whatever the level says
 };
 

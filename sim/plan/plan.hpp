@@ -32,13 +32,16 @@ struct PlannedEffect {
 /// Which effects a scene before a board gets, and why.
 struct Plan {
   std::vector<PlannedEffect> effects;  ///< all there are, in the order of light
+  double signal_rms_lsb = 0.0;         ///< of the levels without noise, about
   double noise_lsb = 0.0;              ///< read noise, shot noise and rounding: rms over the channels
   double noise_nmse = 0.0;             ///< what that alone makes of the reconstruction
   double left_out_nmse = 0.0;          ///< sum over what is left out, at most share_left_out times noise_nmse
   double left_out_lsb = 0.0;           ///< rms of the sum of all left out, at most: sum of the bounds
   Sensitivity sensitivity;
 
+  /// Of an effect of the list.
   [[nodiscard]] const PlannedEffect& of(std::string_view effect) const;
+  [[nodiscard]] bool leaves_nothing_out() const noexcept;
 };
 
 /// What is left out may add this share of what the noise itself makes of a reconstruction.
@@ -47,7 +50,7 @@ inline constexpr double share_left_out = 0.1;
 enum class PlanMode { automatic, everything, nothing };
 
 /// Leaves out the effects that save most time for their error, while what they add up to stays within the share; what
-/// the scene forces is as it says. `everything`: all that are called for; `nothing`: none but what has no noise.
+/// the scene forces is as it says. `everything`: all there are, called for or not; `nothing`: none.
 [[nodiscard]] Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensitivity,
                                 PlanMode mode = PlanMode::automatic);
 

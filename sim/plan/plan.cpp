@@ -1,0 +1,114 @@
+#include "sim/plan/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace compueye::sim {
+namespace {
+
+/// Rounding, and what photons and the converter add in every channel and frame.
+double noise_of(const Circumstances& c) noexcept {
+  constexpr double rounding_variance = 1.0 / 12.0;
+  const double read = c.board.sensor.read_noise_lsb, electrons = c.board.detector.electrons_per_lsb;
+  const double shot_variance = electrons > 0.0 ? std::max(c.preview.mean, 0.0) / electrons : 0.0;
+  return std::sqrt(rounding_variance + read * read + shot_variance);
+}
+
+Decision forced_to(Forced forced) noexcept {
+  return forced == Forced::on ? Decision::forced_on : Decision::forced_off;
+}
+
+PlannedEffect look_at(const Effect& effect, const Circumstances& c) {
+  PlannedEffect planned;
+  planned.effect = &effect;
+  planned.called_for_by = effect.calls_for(c);
+  planned.cost = effect.cost(c);
+  if (!planned.called_for_by.empty()) planned.bound_lsb = effect.bound(c);
+  const auto forced = c.scene.effects.find(std::string(effect.name));
+  if (forced != c.scene.effects.end()) {
+    planned.decision = forced_to(forced->second);
+  } else {
+    planned.decision = planned.called_for_by.empty() ? Decision::not_called : Decision::on;
+  }
+  return planned;
+}
+
+/// Those that are the planner's to leave out: first what costs least accuracy for the time it saves.
+std::vector<PlannedEffect*> candidates(Plan& plan) {
+  std::vector<PlannedEffect*> all;
+  for (PlannedEffect& each : plan.effects) {
+    if (each.decision == Decision::on) all.push_back(&each);
+  }
+  constexpr double seconds = 100.0;  // of frames that set-up is paid for
+  const auto price = [&](const PlannedEffect& e) {
+    return e.nmse / std::max(e.cost.set_up_s + seconds * e.cost.frame_s, 1e-12);
+  };
+  std::stable_sort(all.begin(), all.end(), [&](const auto* a, const auto* b) { return price(*a) < price(*b); });
+  return all;
+}
+
+void leave_out(Plan& plan) {
+  for (PlannedEffect* each : candidates(plan)) {
+    if (!(plan.left_out_nmse + each->nmse <= share_left_out * plan.noise_nmse)) continue;
+    plan.left_out_nmse += each->nmse;
+    plan.left_out_lsb += each->bound_lsb;
+    each->decision = Decision::left_out;
+  }
+}
+
+}  // namespace
+
+std::string_view name(Decision decision) noexcept {
+  switch (decision) {
+    case Decision::on:
+      return "on";
+    case Decision::left_out:
+      return "left out";
+    case Decision::not_called:
+      return "not called for";
+    case Decision::forced_on:
+      return "on, as the scene says";
+    case Decision::forced_off:
+      return "off, as the scene says";
+  }
+  return "";
+}
+
+Sensitivity Sensitivity::of_small_eye() noexcept {
+  return {{330.0, 330.0, 1.0, 13.0, 950.0}, false};
+}
+
+const PlannedEffect& Plan::of(std::string_view effect) const {
+  return *std::find_if(effects.begin(), effects.end(), [&](const auto& each) { return each.effect->name == effect; });
+}
+
+bool Plan::leaves_nothing_out() const noexcept {
+  return std::all_of(effects.begin(), effects.end(),
+                     [](const PlannedEffect& each) { return each.on() || each.decision == Decision::not_called; });
+}
+
+Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensitivity, PlanMode mode) {
+  Plan plan;
+  plan.sensitivity = sensitivity;
+  plan.signal_rms_lsb = circumstances.preview.rms;
+  plan.noise_lsb = noise_of(circumstances);
+  const auto nmse_of = [&](double error_lsb, ErrorKind kind) {
+    if (error_lsb == 0.0) return 0.0;
+    // Without light there is no picture to spoil: errors are weighed as beside one LSB of signal.
+    const double share = error_lsb / std::max(plan.signal_rms_lsb, 1.0);
+    return sensitivity.of(kind) * share * share;
+  };
+  plan.noise_nmse = nmse_of(plan.noise_lsb, ErrorKind::white);
+  for (const Effect* effect : effects()) {
+    PlannedEffect& planned = plan.effects.emplace_back(look_at(*effect, circumstances));
+    planned.nmse = nmse_of(planned.bound_lsb, effect->error);
+    if (planned.decision == Decision::forced_on || planned.decision == Decision::forced_off) continue;
+    if (mode == PlanMode::everything) planned.decision = Decision::on;
+    if (mode == PlanMode::nothing && planned.decision == Decision::on) planned.decision = Decision::left_out;
+  }
+  if (mode == PlanMode::automatic) leave_out(plan);
+  return plan;
+}
+
+}  // namespace compueye::sim

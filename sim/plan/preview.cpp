@@ -1,0 +1,132 @@
+#include "sim/plan/preview.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hal/try.hpp"
+#include "sim/render/renderer.hpp"
+
+namespace compueye::sim {
+namespace {
+
+using Levels = std::vector<double>;
+
+/// Means over blocks, so that a pixel is about `pixel_mm` wide.
+hal::Image coarsened(const hal::Image& picture, double width_mm, double height_mm, double pixel_mm) {
+  const auto pixels = [&](double side_mm, int at_most) {
+    return static_cast<int>(std::clamp(std::ceil(side_mm / pixel_mm), 1.0, static_cast<double>(at_most)));
+  };
+  hal::Image coarse(pixels(height_mm, picture.rows), pixels(width_mm, picture.cols));
+  std::vector<int> counts(coarse.pixels.size());
+  for (int row = 0; row < picture.rows; ++row) {
+    for (int col = 0; col < picture.cols; ++col) {
+      const int r = static_cast<int>(static_cast<long>(row) * coarse.rows / picture.rows);
+      const int c = static_cast<int>(static_cast<long>(col) * coarse.cols / picture.cols);
+      coarse.at(r, c) += picture.at(row, col);
+      ++counts[static_cast<std::size_t>(r) * static_cast<std::size_t>(coarse.cols) + static_cast<std::size_t>(c)];
+    }
+  }
+  for (std::size_t n = 0; n < counts.size(); ++n) coarse.pixels[n] /= static_cast<float>(counts[n]);
+  return coarse;
+}
+
+/// What a quarter of an ommatidium's view is wide on the object plane.
+double look_mm(const EyeToSimulate& board) {
+  return std::max(board.object.distance_mm * std::tan(board.eye.acceptance_rad / 2.0) / 2.0, 1e-6);
+}
+
+Scene coarse_scene(const EyeToSimulate& board, const Scene& scene) {
+  Scene coarse = scene;
+  for (Surface& surface : coarse.surfaces) {
+    for (hal::Image& band : surface.bands) {
+      band = coarsened(band, surface.width_mm, surface.height_mm, look_mm(board));
+    }
+  }
+  return coarse;
+}
+
+hal::Result<Levels> levels_of(const EyeToSimulate& board, Scene scene, double right_mm, double up_mm) {
+  for (Surface& surface : scene.surfaces) {
+    surface.pose.centre_mm.x += right_mm;
+    surface.pose.centre_mm.y += up_mm;
+  }
+  RenderSettings settings;
+  const double white = board.eye.acceptance_rad * board.object.distance_mm /
+                       std::sqrt(board.object.pixel_width_mm() * board.object.pixel_height_mm());
+  settings.tolerance = 1e-3 * std::max(white * white, 1e-6);
+  Renderer renderer = TRY(Renderer::create(board.eye, board.object, OpticsAsBuilt::drawn(board.eye), settings, scene));
+  Levels levels(static_cast<std::size_t>(board.eye.ommatidia()));
+  renderer.render(0.0, levels);
+  for (double& level : levels) level *= scene.light.level / board.sensor.lsb();
+  return levels;
+}
+
+double rms(const Levels& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v * v;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+void add_neighbours(const hal::EyeGeometry& eye, Preview& preview) {
+  const auto at = [&](int i, int k) {
+    return preview
+        .levels[static_cast<std::size_t>(i) * static_cast<std::size_t>(eye.columns) + static_cast<std::size_t>(k)];
+  };
+  double squares = 0.0, before = 0.0;
+  for (int i = 0; i < eye.rows; ++i) {
+    for (int k = 0; k < eye.columns; ++k) {
+      double sum = 0.0;
+      int count = 0;
+      for (const auto& [down, right] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+        if (i + down < 0 || i + down >= eye.rows || k + right < 0 || k + right >= eye.columns) continue;
+        sum += at(i + down, k + right);
+        ++count;
+      }
+      if (count > 0) squares += std::pow(at(i, k) - sum / count, 2);
+    }
+  }
+  for (std::size_t m = 1; m < preview.levels.size(); ++m) {
+    const double step = preview.levels[m] - preview.levels[m - 1];
+    before += step * step;
+    preview.previous_largest = std::max(preview.previous_largest, std::fabs(step));
+  }
+  const auto channels = static_cast<double>(preview.levels.size());
+  preview.neighbour_rms = std::sqrt(squares / channels);
+  preview.previous_rms = std::sqrt(before / channels);
+}
+
+/// By moving the scene to both sides.
+hal::Result<void> add_slopes(const EyeToSimulate& board, const Scene& scene, Preview& preview) {
+  const double step = look_mm(board) / 2.0;
+  for (const auto& [right, up] : {std::pair{step, 0.0}, {0.0, step}}) {
+    const Levels after = TRY(levels_of(board, scene, right, up));
+    const Levels before = TRY(levels_of(board, scene, -right, -up));
+    Levels slope(after.size()), bend(after.size());
+    for (std::size_t m = 0; m < after.size(); ++m) {
+      slope[m] = (after[m] - before[m]) / (2.0 * step);
+      bend[m] = (after[m] + before[m] - 2.0 * preview.levels[m]) / (step * step);
+      preview.gradient_largest = std::max(preview.gradient_largest, std::fabs(slope[m]));
+    }
+    preview.gradient_rms = std::max(preview.gradient_rms, rms(slope));
+    preview.laplacian_rms = std::max(preview.laplacian_rms, rms(bend));
+  }
+  return {};
+}
+
+}  // namespace
+
+hal::Result<Preview> preview_of(const EyeToSimulate& board, const Scene& scene) {
+  const Scene coarse = coarse_scene(board, scene);
+  Preview preview;
+  preview.levels = TRY(levels_of(board, coarse, 0.0, 0.0));
+  for (const double level : preview.levels) {
+    preview.mean += level / static_cast<double>(preview.levels.size());
+    preview.largest = std::max(preview.largest, level);
+  }
+  preview.rms = rms(preview.levels);
+  add_neighbours(board.eye, preview);
+  TRY(add_slopes(board, coarse, preview));
+  return preview;
+}
+
+}  // namespace compueye::sim

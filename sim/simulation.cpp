@@ -1,0 +1,167 @@
+#include "sim/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "hal/try.hpp"
+#include "sim/plan/preview.hpp"
+#include "sim/render/renderer.hpp"
+
+namespace compueye::sim {
+namespace {
+
+/// Of one code step that integration may be off by.
+constexpr double render_share_of_lsb = 0.05;
+
+hal::Result<void> check(const EyeToSimulate& board) {
+  TRY(board.eye.validate());
+  TRY(board.object.validate());
+  TRY(board.build.validate());
+  TRY(board.sensor.validate());
+  TRY(board.detector.validate(board.eye.ommatidia()));
+  if (std::isfinite(board.frame_rate_hz) && board.frame_rate_hz > 0.0) return {};
+  return hal::fail(hal::ErrorCode::out_of_range, "frame_rate_hz",
+                   "is " + std::to_string(board.frame_rate_hz) + ", expected more than 0");
+}
+
+Workings begin(const EyeToSimulate& board, std::uint64_t seed) {
+  Workings workings;
+  workings.seed = seed;
+  workings.optics = OpticsAsBuilt::drawn(board.eye);
+  workings.render.tolerance = render_share_of_lsb * board.sensor.lsb();
+  return workings;
+}
+
+}  // namespace
+
+double EyeToSimulate::integration_s() const noexcept {
+  return detector.integration_ms > 0.0 ? std::min(detector.integration_ms * 1e-3, period_s()) : period_s();
+}
+
+struct Simulation::Parts {
+  EyeToSimulate board;
+  Scene scene;
+  Preview preview;
+  Plan plan;
+  Workings workings;
+  std::vector<Renderer> renderers;  // one: a Renderer is made once the scene has its place
+  std::vector<double> signals, render, levels;
+  std::vector<std::int32_t> stuck;
+  std::vector<double> channel_turn;  // 0 .. 1 of the scan, by channel
+  bool changes = false;              // the scene, as far as it is rendered
+  bool rendered = false;
+
+  [[nodiscard]] double start_s(std::uint64_t frame) const noexcept {
+    return static_cast<double>(frame) * board.period_s();
+  }
+  /// The scene begins anew after its duration; lamps and sensors do not.
+  [[nodiscard]] double scene_s(std::uint64_t frame) const noexcept {
+    return scene.duration_s > 0.0 ? std::fmod(start_s(frame), scene.duration_s) : start_s(frame);
+  }
+
+  /// signals = the mean over the instants of the integration, which begins at `t_s`.
+  void integrate(double t_s, std::span<double> into) {
+    const int n = workings.exposure.instants;
+    std::fill(into.begin(), into.end(), 0.0);
+    for (int k = 0; k < n; ++k) {
+      renderers.front().render(t_s + (k + 0.5) / n * board.integration_s(), render);
+      for (std::size_t m = 0; m < into.size(); ++m) into[m] += render[m] / n;
+    }
+  }
+
+  /// Channels at their own times: linear between the times of the scan that are rendered.
+  void integrate_in_turn(double t_s) {
+    const int n = workings.exposure.scan_instants;
+    std::fill(signals.begin(), signals.end(), 0.0);
+    for (int k = 0; k < n; ++k) {
+      integrate(t_s + board.detector.scan_s() * k / (n - 1), levels);
+      for (std::size_t m = 0; m < signals.size(); ++m) {
+        signals[m] += std::max(0.0, 1.0 - std::fabs(channel_turn[m] * (n - 1) - k)) * levels[m];
+      }
+    }
+  }
+
+  void expose(std::uint64_t frame) {
+    if (rendered && !changes) return;
+    rendered = true;
+    if (workings.exposure.channels_in_turn) {
+      integrate_in_turn(scene_s(frame));
+    } else {
+      integrate(scene_s(frame), signals);
+    }
+  }
+};
+
+Simulation::Simulation(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+hal::Result<Simulation> Simulation::create(EyeToSimulate board, Scene scene, std::uint64_t seed,
+                                           const Sensitivity& sensitivity, PlanMode mode) {
+  TRY(check(board));
+  TRY(validate(scene));
+  auto parts = std::make_unique<Parts>();
+  Parts& p = *parts;
+  p.board = std::move(board);
+  p.scene = std::move(scene);
+  p.preview = TRY(preview_of(p.board, p.scene));
+  const Circumstances circumstances{p.board, p.scene, p.preview};
+  p.plan = plan_effects(circumstances, sensitivity, mode);
+  p.workings = begin(p.board, seed);
+  for (const PlannedEffect& each : p.plan.effects) {
+    if (each.on()) each.effect->apply(circumstances, p.workings);
+  }
+  p.changes = p.workings.render.motion && !p.scene.still();
+  p.renderers.push_back(
+      TRY(Renderer::create(p.board.eye, p.board.object, p.workings.optics, p.workings.render, p.scene)));
+  const auto channels = static_cast<std::size_t>(p.board.eye.ommatidia());
+  for (auto* each : {&p.signals, &p.render, &p.levels, &p.channel_turn}) each->resize(channels);
+  p.stuck.resize(channels);
+  const int taking_turns = std::max(p.board.detector.mux_channels, 1);
+  for (std::size_t m = 0; m < channels && taking_turns > 1; ++m) {
+    p.channel_turn[m] = static_cast<double>(m % static_cast<std::size_t>(taking_turns)) / (taking_turns - 1);
+  }
+  p.expose(0);
+  return Simulation(std::move(parts));
+}
+
+const Plan& Simulation::plan() const noexcept {
+  return parts_->plan;
+}
+const EyeToSimulate& Simulation::board() const noexcept {
+  return parts_->board;
+}
+
+std::span<const double> Simulation::noise_free(std::uint64_t frame) {
+  parts_->expose(frame);
+  return parts_->signals;
+}
+
+std::span<const double> Simulation::levels_lsb(std::uint64_t frame) {
+  Parts& p = *parts_;
+  p.expose(frame);
+  const double lsb = p.board.sensor.lsb();
+  for (std::size_t m = 0; m < p.levels.size(); ++m) p.levels[m] = p.signals[m] / lsb;
+  std::fill(p.stuck.begin(), p.stuck.end(), -1);
+  FrameInWork work{frame, p.start_s(frame), p.levels, p.stuck};
+  for (const auto& step : p.workings.steps) step->apply(work);
+  return p.levels;
+}
+
+bool Simulation::codes(std::uint64_t frame, std::span<std::int32_t> codes) {
+  (void)levels_lsb(frame);
+  Parts& p = *parts_;
+  const std::int32_t largest = p.board.sensor.largest_code();
+  bool saturated = false;
+  for (std::size_t m = 0; m < codes.size(); ++m) {
+    codes[m] = static_cast<std::int32_t>(std::clamp(std::round(p.levels[m]), 0.0, static_cast<double>(largest)));
+    if (p.stuck[m] >= 0) codes[m] = std::min(p.stuck[m], largest);
+    saturated = saturated || codes[m] == largest;
+  }
+  return saturated;
+}
+
+}  // namespace compueye::sim
