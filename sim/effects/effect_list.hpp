@@ -1,0 +1,19 @@
+#pragma once
+
+#include "sim/effects/effect.hpp"
+
+/// Every effect in the order of light: a line each, and a file of that name beside this one. Where two of a group touch
+/// the same thing, the later one finds what the earlier one made of it.
+#define COMPUEYE_EFFECTS(EFFECT) \
+  EFFECT(off_plane)              \
+  EFFECT(motion)                 \
+  EFFECT(dark_level)             \
+  EFFECT(read_noise)
+
+namespace compueye::sim::effect {
+
+#define COMPUEYE_DECLARE(name) extern const Effect name;
+COMPUEYE_EFFECTS(COMPUEYE_DECLARE)
+#undef COMPUEYE_DECLARE
+
+}  // namespace compueye::sim::effect

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include "sim/effects/effect.hpp"
+
+namespace compueye::sim {
+
+/// What bounds allow for the preview's few per cent and for what other effects do to the levels.
+inline constexpr double margin = 1.25;
+
+/// Of an endless scene bounds look at so many seconds.
+inline constexpr double longest_s = 3600.0;
+
+/// "0.25", "1.2e+03": three digits, for a reason in words.
+[[nodiscard]] std::string figure(double value);
+
+/// Seconds that are looked at: the scene's duration, or longest_s.
+[[nodiscard]] double seconds_looked_at(const Circumstances& c) noexcept;
+
+/// Of the fastest surface with its turning, at its farthest corner: mm/s.
+[[nodiscard]] double speed_mm_per_s(const Circumstances& c) noexcept;
+
+/// From an apex to the object plane, about.
+[[nodiscard]] double range_mm(const Circumstances& c) noexcept;
+
+/// Radius of what an ommatidium sees of the object plane when it looks straight at it.
+[[nodiscard]] double look_radius_mm(const Circumstances& c) noexcept;
+
+/// What an ommatidium delivers that looks straight at white, LSB.
+[[nodiscard]] double white_lsb(const Circumstances& c) noexcept;
+
+/// Brightest pixel of the scene, as lit.
+[[nodiscard]] double brightest(const Circumstances& c) noexcept;
+
+/// Of a step of `ns` nanoseconds a channel.
+[[nodiscard]] EffectCost step_cost(const Circumstances& c, double ns) noexcept;
+
+/// Of rendering the whole scene `renders` times more a frame.
+[[nodiscard]] EffectCost render_cost(const Circumstances& c, double renders) noexcept;
+
+}  // namespace compueye::sim
