@@ -16,7 +16,7 @@
 #include "recon/metrics.hpp"
 #include "recon/reconstructor.hpp"
 #include "recon/solver_list.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 using namespace compueye;
 

@@ -20,7 +20,7 @@
 #include "recon/reconstructor.hpp"
 #include "recon/solver_list.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 using namespace compueye;
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::sim {
 namespace {

@@ -11,7 +11,7 @@
 #include "recon/lambda_rule.hpp"
 #include "recon/solver_list.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::bench {
 namespace {

@@ -22,7 +22,7 @@
 #include "recon/metrics.hpp"
 #include "recon/reconstructor.hpp"
 #include "sim/optics.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::bench {
 namespace {

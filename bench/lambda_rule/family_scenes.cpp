@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "sim/pictures/built_in_scenes.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::bench {
 namespace {

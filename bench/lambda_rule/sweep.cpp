@@ -13,7 +13,7 @@
 #include "recon/solver_list.hpp"
 #include "sim/optics.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::bench {
 namespace {

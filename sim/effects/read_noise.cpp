@@ -1,6 +1,6 @@
 #include "sim/effects/effect_list.hpp"
 #include "sim/effects/estimates.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::sim {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "sim/pictures/pictures.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::sim::pictures {
 

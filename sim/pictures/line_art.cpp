@@ -5,7 +5,7 @@
 
 #include "sim/pictures/pictures.hpp"
 #include "sim/pictures/strokes.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::sim::pictures {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "sim/pictures/pictures.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::sim::pictures {
 namespace {

@@ -13,7 +13,7 @@
 #include "firmware/operating_points/deadline_choice.hpp"
 #include "hal/clock.hpp"
 #include "hal/try.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 #include "sim/scene/scene_truth.hpp"
 #include "sim/simulated_eye.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "recon/setup/basis_list.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::firmware {
 namespace {

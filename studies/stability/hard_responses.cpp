@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::firmware {
 namespace {

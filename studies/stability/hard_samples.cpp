@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 namespace compueye::firmware {
 namespace {

@@ -10,7 +10,7 @@
 #include "recon/lambda_rule.hpp"
 #include "recon/solver_list.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 #include "tests/recon/solve_frame.hpp"
 
 namespace compueye::golden {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 
 using namespace compueye;
 using sim::ConeSection;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "sim/effects/effect_list.hpp"
-#include "sim/random.hpp"
+#include "sim/random/random.hpp"
 #include "tests/hal/error_check.hpp"
 
 using namespace compueye;
