@@ -26,9 +26,10 @@ hal::Result<void> check(const EyeToSimulate& board) {
                    "is " + std::to_string(board.frame_rate_hz) + ", expected more than 0");
 }
 
-Workings begin(const EyeToSimulate& board, std::uint64_t seed) {
+Workings begin(const EyeToSimulate& board, const Scene& scene, std::uint64_t seed) {
   Workings workings;
   workings.seed = seed;
+  workings.scene = lit(scene);
   workings.optics = OpticsAsBuilt::drawn(board.eye);
   workings.render.tolerance = render_share_of_lsb * board.sensor.lsb();
   return workings;
@@ -110,13 +111,13 @@ hal::Result<Simulation> Simulation::create(EyeToSimulate board, Scene scene, std
   p.preview = TRY(preview_of(p.board, p.scene));
   const Circumstances circumstances{p.board, p.scene, p.preview};
   p.plan = plan_effects(circumstances, sensitivity, mode);
-  p.workings = begin(p.board, seed);
+  p.workings = begin(p.board, p.scene, seed);
   for (const PlannedEffect& each : p.plan.effects) {
     if (each.on()) each.effect->apply(circumstances, p.workings);
   }
-  p.changes = p.workings.render.motion && !p.scene.still();
+  p.changes = p.workings.render.motion && !p.workings.scene.still();
   p.renderers.push_back(
-      TRY(Renderer::create(p.board.eye, p.board.object, p.workings.optics, p.workings.render, p.scene)));
+      TRY(Renderer::create(p.board.eye, p.board.object, p.workings.optics, p.workings.render, p.workings.scene)));
   const auto channels = static_cast<std::size_t>(p.board.eye.ommatidia());
   for (auto* each : {&p.signals, &p.render, &p.levels, &p.channel_turn}) each->resize(channels);
   p.stuck.resize(channels);

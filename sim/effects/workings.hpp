@@ -7,6 +7,7 @@
 
 #include "sim/render/optics_as_built.hpp"
 #include "sim/render/render_settings.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace compueye::sim {
 
@@ -40,6 +41,9 @@ struct Exposure {
 /// before the dark level, then codes.
 struct Workings {
   std::uint64_t seed = 0;
+  /// What is rendered. Begins as given, the pictures of what is lit times Light::level; what light, display and
+  /// spectrum do to a picture is done to it here, once.
+  Scene scene;
   OpticsAsBuilt optics;   ///< begins as drawn
   RenderSettings render;  ///< begins with everything off
   Exposure exposure;

@@ -36,7 +36,7 @@ double look_mm(const EyeToSimulate& board) {
 }
 
 Scene coarse_scene(const EyeToSimulate& board, const Scene& scene) {
-  Scene coarse = scene;
+  Scene coarse = lit(scene);
   for (Surface& surface : coarse.surfaces) {
     for (hal::Image& band : surface.bands) {
       band = coarsened(band, surface.width_mm, surface.height_mm, look_mm(board));
@@ -57,7 +57,7 @@ hal::Result<Levels> levels_of(const EyeToSimulate& board, Scene scene, double ri
   Renderer renderer = TRY(Renderer::create(board.eye, board.object, OpticsAsBuilt::drawn(board.eye), settings, scene));
   Levels levels(static_cast<std::size_t>(board.eye.ommatidia()));
   renderer.render(0.0, levels);
-  for (double& level : levels) level *= scene.light.level / board.sensor.lsb();
+  for (double& level : levels) level /= board.sensor.lsb();
   return levels;
 }
 

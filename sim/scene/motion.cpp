@@ -50,6 +50,7 @@ bool Motion::still() const noexcept {
 }
 
 Pose Motion::moved(const Pose& from, double t_s) const noexcept {
+  if (steps_hz > 0.0) t_s = std::floor(t_s * steps_hz) / steps_hz;
   const double t = t_s - start_s;
   if (!(t > 0.0)) return from;
   const hal::Vec3 offset = on_path(path, repeats, t);

@@ -31,6 +31,7 @@ struct Motion {
   double tilt_rad_per_s = 0.0, lean_rad_per_s = 0.0, roll_rad_per_s = 0.0;
   std::vector<Waypoint> path;  ///< added to the velocity; linear between, standing still after the last
   bool repeats = false;        ///< the path begins anew after its last waypoint
+  double steps_hz = 0.0;       ///< stands still between so many steps a second from the scene's beginning; 0: flows
 
   [[nodiscard]] bool still() const noexcept;
   /// At `t_s` after the scene began.

@@ -80,6 +80,17 @@ Scene scene_on(const hal::ObjectPlane& object, std::string name, hal::Image pict
   return scene;
 }
 
+Scene lit(Scene scene) {
+  for (Surface& surface : scene.surfaces) {
+    if (surface.shines || scene.light.level == 1.0) continue;
+    for (hal::Image& band : surface.bands) {
+      for (float& pixel : band.pixels) pixel = static_cast<float>(scene.light.level * static_cast<double>(pixel));
+    }
+  }
+  scene.light.level = 1.0;
+  return scene;
+}
+
 Result<void> validate(const Scene& scene) {
   if (scene.surfaces.empty()) {
     return fail(ErrorCode::usage, scene.name, "there is nothing to see in it, expected at least one surface");

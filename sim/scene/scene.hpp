@@ -47,6 +47,9 @@ struct Scene {
 /// The picture stretched over the whole object plane.
 [[nodiscard]] Scene scene_on(const hal::ObjectPlane& object, std::string name, hal::Image picture);
 
+/// The pictures of the surfaces that do not shine times Light::level, which is 1 then.
+[[nodiscard]] Scene lit(Scene scene);
+
 /// Errors: usage (no surface), mismatch (rows, columns and number of pixels disagree; bands of several sizes),
 /// out_of_range (empty, a size, distance or rate outside its range, a pixel that is negative, NaN or infinite, named by
 /// row and column). The place is the surface's name or the scene's.
