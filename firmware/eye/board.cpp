@@ -109,6 +109,53 @@ hal::Result<void> check_sensor(const Board& board) {
   return {};
 }
 
+/// Keys that would be ignored.
+hal::Result<void> check_needs(const Board& board) {
+  struct Need {
+    std::string_view section, key;
+    bool met;
+    std::string_view other;
+  };
+  const hal::BuildSettings& build = board.build;
+  const hal::DetectorSettings& detector = board.detector;
+  for (const Need& need : {Need{"build", "edge_order", build.profile == hal::ProfileKind::soft, "profile = \"soft\""},
+                           Need{"build", "dust_loss", build.dust_share > 0.0, "dust_share"},
+                           Need{"sensor", "mux_time_constant_us", detector.mux_channels > 1, "mux_channels"},
+                           Need{"sensor", "hot_lsb", !detector.hot.empty(), "hot"}}) {
+    if (need.met || !board.states(need.section, need.key)) continue;
+    return hal::fail(ErrorCode::mismatch, board.place(need.section, need.key),
+                     fmt::format("{} means nothing in [{}] without {}; state that or remove the line", need.key,
+                                 need.section, need.other));
+  }
+  if (!detector.hot.empty() && detector.hot_lsb == 0.0) {
+    return hal::fail(ErrorCode::mismatch, board.place("sensor", "hot"),
+                     "hot names channels in [sensor] without hot_lsb, which says by how much");
+  }
+  return {};
+}
+
+/// What happens within a frame has to fit into one.
+hal::Result<void> check_period(const Board& board) {
+  const double period_ms = 1e3 / board.source.frame_rate_hz;
+  const auto fits = [&](std::string_view key, std::string_view what, double ms) -> hal::Result<void> {
+    if (ms <= period_ms) return {};
+    return hal::fail(ErrorCode::mismatch, board.place("sensor", key),
+                     fmt::format("{} in [sensor] makes {} last {:.6g} ms, longer than a frame at {} frames a second, "
+                                 "{:.6g} ms",
+                                 key, what, ms, board.source.frame_rate_hz, period_ms));
+  };
+  TRY(fits("integration_ms", "the exposure", board.detector.integration_ms));
+  return fits("mux_slot_us", "the scan of the channels", board.detector.scan_s() * 1e3);
+}
+
+/// As built, and the sensor besides its codes.
+hal::Result<void> check_as_built(const Board& board) {
+  TRY(with_line(board, board.build.validate()));
+  TRY(with_line(board, board.detector.validate(board.eye.ommatidia())));
+  TRY(check_needs(board));
+  return check_period(board);
+}
+
 hal::Result<void> check_reconstruction(const Board& board) {
   if (board.plan.warm_start && !board.plan.solver->starts_warm()) {
     return hal::fail(
@@ -158,6 +205,7 @@ hal::Result<void> check_board(const Board& board) {
   TRY(with_line(board, board.eye.validate()));
   TRY(with_line(board, board.object.validate()));
   TRY(check_sensor(board));
+  TRY(check_as_built(board));
   return check_reconstruction(board);
 }
 

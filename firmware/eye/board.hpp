@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "hal/build_settings.hpp"
+#include "hal/detector_settings.hpp"
 #include "hal/eye_geometry.hpp"
 #include "hal/result.hpp"
 #include "hal/sensor_settings.hpp"
@@ -35,6 +37,8 @@ struct Board {
   hal::EyeGeometry eye;
   hal::ObjectPlane object;
   hal::SensorSettings sensor;
+  hal::DetectorSettings detector;  ///< of [sensor] too: what its simulation does besides
+  hal::BuildSettings build;
   SourceSettings source;
   recon::Objective objective;    ///< but for its lambda, which choose_lambda() finds
   recon::Plan plan;              ///< but for what depends on the response

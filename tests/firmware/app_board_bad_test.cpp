@@ -46,7 +46,7 @@ TEST_CASE("unknown keys and sections are errors with the nearest name") {
        {"acceptance_angle_deg?", "acceptence_angle_deg", "[eye]"},
        ErrorCode::not_found},
       {"width_mm", "Width_mm", 11, {"Width_mm", "[object]", "width_mm?"}, ErrorCode::not_found},
-      {"bits = 16", "bits = 16\ntemperature = 3", 16, {"temperature", "bits", "full_scale"}, ErrorCode::not_found},
+      {"bits = 16", "bits = 16\nwavelength = 3", 16, {"wavelength", "bits", "full_scale"}, ErrorCode::not_found},
       {"columns = 10", "columns = 10\nbits = 3", 6, {"bits", "[eye]", "[sensor]"}, ErrorCode::not_found},
       {"kind = ", "rows = 1\nkind = ", 20, {"rows", "[source]", "[eye]", "[object]"}, ErrorCode::not_found},
       {"[reconstruction]", "[reconstuction]", 22, {"reconstruction?", "[reconstuction]"}, ErrorCode::not_found},

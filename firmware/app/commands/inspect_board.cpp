@@ -1,5 +1,7 @@
 #include "firmware/app/commands/inspect.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -29,8 +31,11 @@ using hal::Result;
 
 Value value_of(const SettingValue& value) {
   const auto convert = [](const auto& plain) -> Value {
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(plain)>, ForeignValue>) {
+    using Plain = std::remove_cvref_t<decltype(plain)>;
+    if constexpr (std::is_same_v<Plain, ForeignValue>) {
       return plain.kind;
+    } else if constexpr (std::is_same_v<Plain, NumberRows>) {
+      return quoted(plain);
     } else {
       return plain;
     }
@@ -58,6 +63,18 @@ Figures settings_figures(const Board& board, std::string_view section) {
   return figures;
 }
 
+/// "seed 1, pose_rms_deg 0.3", or "as drawn": what differs from the drawing.
+std::string as_built_text(const Board& board) {
+  std::string text;
+  for (const Setting& setting : settings()) {
+    if (!setting.as_built) continue;
+    const std::optional<SettingValue> shown = setting.show(board);
+    if (!shown || shown == setting.fallback) continue;
+    text += fmt::format(", {} {}", setting.key, quoted(*shown));
+  }
+  return text.empty() ? "as drawn" : fmt::format("seed {}", board.build.seed) + text;
+}
+
 void add_eye(const Board& board, Figures& figures) {
   figures.add("board", board.name, "board").add("description", board.description, "description");
   figures.add("eye", settings_figures(board, "eye"), "eye",
@@ -72,6 +89,7 @@ void add_sensor(const Board& board, Figures& figures) {
   figures.add("sensor", settings_figures(board, "sensor"), "sensor",
               "{sensor.bits} bits, full scale {sensor.full_scale} white pixels, read noise {sensor.read_noise_lsb} "
               "LSB, {sensor.dead:count} dead");
+  figures.add("build", settings_figures(board, "build"), "as built", as_built_text(board));
   figures.add("lsb", board.sensor.lsb(), "LSB", "{:6} white pixels");
   figures.add("noise_sigma", board.noise_sigma(), "noise of a sample", "{:6} white pixels");
   figures.add("source", settings_figures(board, "source"), "source",

@@ -31,12 +31,17 @@ std::string value_text(const SettingValue& value) {
 
 using Lines = std::map<std::string, std::string, std::less<>>;
 
-/// Of the settings that matter, by key.
+bool says_which_eye(const Setting& setting) {
+  return setting.section == "eye" || setting.section == "object" || setting.section == "sensor" || setting.as_built;
+}
+
+/// Of the settings that matter, by key. What is as drawn has no line: recordings are older than those settings.
 Lines lines_of(const Board& board) {
   Lines lines;
   for (const Setting& setting : settings()) {
-    if (setting.section != "eye" && setting.section != "object" && setting.section != "sensor") continue;
+    if (!says_which_eye(setting)) continue;
     const auto value = setting.show(board);
+    if (setting.as_built && value == setting.fallback) continue;
     lines.emplace(fmt::format("{}{}.{}", prefix, setting.section, setting.key),
                   value ? value_text(*value) : std::string(left_out));
   }
@@ -80,9 +85,14 @@ std::vector<BoardDifference> board_differences(std::string_view lines, const Boa
     }
     return differences;
   }
-  for (const auto& [key, value] : now) {
-    const auto at = then.find(key);
-    compare(key.substr(prefix.size()), at == then.end() ? std::string(left_out) : at->second, value);
+  const auto in = [](const Lines& all, const std::string& key) {
+    const auto at = all.find(key);
+    return at == all.end() ? std::string(left_out) : at->second;
+  };
+  for (const Setting& setting : settings()) {
+    if (!says_which_eye(setting)) continue;
+    const std::string key = fmt::format("{}.{}", setting.section, setting.key);
+    compare(key, in(then, std::string(prefix) + key), in(now, std::string(prefix) + key));
   }
   return differences;
 }

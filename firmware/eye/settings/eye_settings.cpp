@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <numbers>
@@ -40,15 +39,6 @@ Row angle(std::string_view name, std::string_view meaning) {
       .of(SettingType::real)
       .stored([](Board& b, const V& v) { b.eye.*Angle = real_of(v) * (std::numbers::pi / half_turn_deg); },
               [](const Board& b) { return value_of(b.eye.*Angle * half_turn_deg / std::numbers::pi); });
-}
-
-void store_dead(Board& b, const V& v) {
-  const auto& list = std::get<std::vector<std::int64_t>>(v);
-  b.sensor.dead.assign(list.begin(), list.end());
-  std::sort(b.sensor.dead.begin(), b.sensor.dead.end());
-}
-std::optional<V> dead_of(const Board& b) {
-  return V{std::vector<std::int64_t>(b.sensor.dead.begin(), b.sensor.dead.end())};
 }
 
 void add_eye(std::vector<Setting>& all) {
@@ -120,11 +110,9 @@ void add_sensor(std::vector<Setting>& all) {
                                                               "code without light; it must leave room below full scale")
            .within({0, 16777215})
            .otherwise(V{0.0}),
-       Row("dead", "channels known to tell nothing, each below M")
-           .of(SettingType::whole_list)
+       field<&Board::sensor, &SensorSettings::dead>("dead", "channels known to tell nothing, each below M")
            .within({0, 65535})
-           .otherwise(V{std::vector<std::int64_t>()})
-           .stored(store_dead, dead_of),
+           .otherwise(V{std::vector<std::int64_t>()}),
        field<&Board::sensor, &SensorSettings::saturation_share>(
            "saturation_share", "a code at or above this share of the highest one counts as saturated")
            .within({0, 1, true, false})

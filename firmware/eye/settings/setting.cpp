@@ -17,11 +17,12 @@ namespace {
 
 using hal::ErrorCode;
 
-constexpr std::array<Section, 7> all_sections{{
+constexpr std::array<Section, 8> all_sections{{
     {"board", "What this board is called."},
     {"eye", "The eye: where each ommatidium sits, where it looks and how wide it sees."},
     {"object", "The plane the eye looks at, and the picture that is reconstructed on it."},
     {"sensor", "From light to codes."},
+    {"build", "How far a simulated eye is from its drawing; left out, not at all."},
     {"source", "Where the samples come from."},
     {"reconstruction", "How a frame is solved."},
     {"scene", "What a simulated eye sees when the command line names nothing else."},
@@ -33,6 +34,9 @@ struct Quote {
   std::string operator()(bool value) const { return value ? "true" : "false"; }
   std::string operator()(const std::string& value) const { return "\"" + excerpt(value) + "\""; }
   std::string operator()(const ForeignValue& value) const { return value.kind; }
+  std::string operator()(const NumberRows& rows) const {
+    return fmt::format("[{}{}]", rows.empty() ? "" : (*this)(rows.front()), rows.size() > 1 ? ", ..." : "");
+  }
   template <class T>
   std::string operator()(const std::vector<T>& values) const {
     constexpr std::size_t most = 6;
@@ -58,73 +62,105 @@ struct Given {
   [[nodiscard]] std::string text() const { return written.empty() ? quoted(value) : excerpt(written); }
 };
 
-tl::unexpected<hal::Error> bad_value(const Setting& setting, const Given& given, ErrorCode code,
+tl::unexpected<hal::Error> bad_value(const SettingRule& rule, const Given& given, ErrorCode code,
                                      std::string_view remark = {}) {
-  return hal::fail(code, {},
-                   fmt::format("{} = {} in [{}], expected {}{}", setting.key, given.text(), setting.section,
-                               setting.expectation(), remark));
+  return hal::fail(
+      code, {},
+      fmt::format("{} = {} in [{}], expected {}{}", rule.key, given.text(), rule.section, rule.expectation(), remark));
 }
 
-hal::Result<void> check_text(const Setting& setting, const Given& given) {
+hal::Result<void> check_text(const SettingRule& rule, const Given& given) {
   constexpr std::size_t longest_name = 64, longest_text = 1000;
   const auto* text = std::get_if<std::string>(&given.value);
-  if (text == nullptr) return bad_value(setting, given, ErrorCode::bad_format);
-  if (setting.type == SettingType::choice) {
-    if (std::find(setting.choices.begin(), setting.choices.end(), *text) != setting.choices.end()) return {};
-    const auto near = nearest_name(*text, setting.choices);
-    return bad_value(setting, given, ErrorCode::not_found, near ? fmt::format("; did you mean \"{}\"?", *near) : "");
+  if (text == nullptr) return bad_value(rule, given, ErrorCode::bad_format);
+  if (rule.type == SettingType::choice) {
+    if (std::find(rule.choices.begin(), rule.choices.end(), *text) != rule.choices.end()) return {};
+    const auto near = nearest_name(*text, rule.choices);
+    return bad_value(rule, given, ErrorCode::not_found, near ? fmt::format("; did you mean \"{}\"?", *near) : "");
   }
-  if (setting.type == SettingType::text) {
+  if (rule.type == SettingType::text) {
     const bool one_line = visible_text(*text) == *text;
     if (one_line && text->size() <= longest_text) return {};
-    return bad_value(setting, given, ErrorCode::out_of_range);
+    return bad_value(rule, given, ErrorCode::out_of_range);
   }
   const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); };
   const bool good =
       !text->empty() && text->size() <= longest_name && plain(text->front()) &&
       std::all_of(text->begin(), text->end(), [&](char c) { return plain(c) || c == '.' || c == '_' || c == '-'; });
   if (good) return {};
-  return bad_value(setting, given, ErrorCode::out_of_range);
+  return bad_value(rule, given, ErrorCode::out_of_range);
 }
 
-hal::Result<void> check_number(const Setting& setting, const Given& given) {
+hal::Result<void> check_number(const SettingRule& rule, const Given& given) {
   const auto* whole = std::get_if<std::int64_t>(&given.value);
   const auto* real = std::get_if<double>(&given.value);
-  if (whole == nullptr && (real == nullptr || setting.type == SettingType::whole)) {
-    return bad_value(setting, given, ErrorCode::bad_format);
+  if (whole == nullptr && (real == nullptr || rule.type == SettingType::whole)) {
+    return bad_value(rule, given, ErrorCode::bad_format);
   }
   const double number = whole != nullptr ? static_cast<double>(*whole) : *real;
-  if (!setting.range.holds(number)) return bad_value(setting, given, ErrorCode::out_of_range);
+  if (!rule.range.holds(number)) return bad_value(rule, given, ErrorCode::out_of_range);
   return {};
 }
 
-hal::Result<void> check_whole_list(const Setting& setting, const Given& given) {
+hal::Result<void> check_whole_list(const SettingRule& rule, const Given& given) {
   const auto* list = std::get_if<std::vector<std::int64_t>>(&given.value);
-  if (list == nullptr) return bad_value(setting, given, ErrorCode::bad_format);
+  if (list == nullptr) return bad_value(rule, given, ErrorCode::bad_format);
   std::set<std::int64_t> seen;
   for (const std::int64_t item : *list) {
-    if (!setting.range.holds(static_cast<double>(item))) {
-      return bad_value(setting, given, ErrorCode::out_of_range, fmt::format("; {} is not", item));
+    if (!rule.range.holds(static_cast<double>(item))) {
+      return bad_value(rule, given, ErrorCode::out_of_range, fmt::format("; {} is not", item));
     }
     if (!seen.insert(item).second) {
-      return bad_value(setting, given, ErrorCode::out_of_range, fmt::format("; {} is there twice", item));
+      return bad_value(rule, given, ErrorCode::out_of_range, fmt::format("; {} is there twice", item));
     }
   }
   return {};
 }
 
-hal::Result<void> check_real_pair(const Setting& setting, const Given& given) {
+hal::Result<void> check_real_pair(const SettingRule& rule, const Given& given) {
   std::vector<double> pair;
   if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&given.value)) {
     pair.assign(whole->begin(), whole->end());
   } else if (const auto* real = std::get_if<std::vector<double>>(&given.value)) {
     pair = *real;
   } else {
-    return bad_value(setting, given, ErrorCode::bad_format);
+    return bad_value(rule, given, ErrorCode::bad_format);
   }
-  if (pair.size() != 2) return bad_value(setting, given, ErrorCode::bad_format);
-  if (setting.range.holds(pair[0]) && setting.range.holds(pair[1]) && pair[0] < pair[1]) return {};
-  return bad_value(setting, given, ErrorCode::out_of_range);
+  if (pair.size() != 2) return bad_value(rule, given, ErrorCode::bad_format);
+  if (rule.range.holds(pair[0]) && rule.range.holds(pair[1]) && pair[0] < pair[1]) return {};
+  return bad_value(rule, given, ErrorCode::out_of_range);
+}
+
+/// As many numbers as the rule names parts, all in its range.
+hal::Result<void> check_tuple(const SettingRule& rule, const Given& given, std::span<const double> numbers) {
+  const auto parts = std::count(rule.parts.begin(), rule.parts.end(), ',') + 1;
+  if (static_cast<std::ptrdiff_t>(numbers.size()) != parts) return bad_value(rule, given, ErrorCode::bad_format);
+  for (const double number : numbers) {
+    if (!rule.range.holds(number)) {
+      return bad_value(rule, given, ErrorCode::out_of_range, fmt::format("; {} is not", number));
+    }
+  }
+  return {};
+}
+
+hal::Result<void> check_tuple(const SettingRule& rule, const Given& given) {
+  if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&given.value)) {
+    return check_tuple(rule, given, std::vector<double>(whole->begin(), whole->end()));
+  }
+  const auto* real = std::get_if<std::vector<double>>(&given.value);
+  if (real == nullptr || rule.type == SettingType::whole_tuple) return bad_value(rule, given, ErrorCode::bad_format);
+  return check_tuple(rule, given, *real);
+}
+
+hal::Result<void> check_rows(const SettingRule& rule, const Given& given) {
+  constexpr std::size_t most = 10'000;
+  const auto* rows = std::get_if<NumberRows>(&given.value);
+  if (rows == nullptr) return bad_value(rule, given, ErrorCode::bad_format);
+  if (rows->size() > most) {
+    return bad_value(rule, given, ErrorCode::out_of_range, fmt::format("; it has {} of them", rows->size()));
+  }
+  for (const std::vector<double>& row : *rows) TRY(check_tuple(rule, Given{row, {}}, row));
+  return {};
 }
 
 /// Limits so far out that only an absurd value meets them are named to who gives one.
@@ -190,7 +226,7 @@ std::string Range::words() const {
                      open_most ? "less than" : "at most", most);
 }
 
-std::string Setting::expectation() const {
+std::string SettingRule::expectation() const {
   switch (type) {
     case SettingType::identifier:
       return "1 to 64 letters, digits, '.', '_' or '-', beginning with a letter or digit";
@@ -203,8 +239,16 @@ std::string Setting::expectation() const {
       return "a whole number " + range.words();
     case SettingType::real:
       return "a number " + range.words();
+    case SettingType::flag:
+      return "true or false";
     case SettingType::whole_list:
       return "a list of distinct whole numbers " + range.words();
+    case SettingType::whole_tuple:
+      return fmt::format("{}, whole numbers {}", parts, range.words());
+    case SettingType::real_tuple:
+      return fmt::format("{}, each {}", parts, range.words());
+    case SettingType::real_rows:
+      return fmt::format("[{}, ...], at most 10000 of them, each number {}", parts, range.words());
     case SettingType::real_pair:
       return "[lo, hi] with lo < hi, each " + range.words();
   }
@@ -218,6 +262,7 @@ std::span<const Section> sections() {
 std::span<const Setting> settings() {
   static const std::vector<Setting> rows = [] {
     std::vector<Setting> all = eye_settings();
+    for (Setting& row : as_built_settings()) all.push_back(std::move(row));
     for (Setting& row : reconstruction_settings()) all.push_back(std::move(row));
     return all;
   }();
@@ -239,20 +284,28 @@ std::vector<const Setting*> settings_for(std::string_view command) {
   return taken;
 }
 
-hal::Result<void> check_value(const Setting& setting, const SettingValue& value, std::string_view written) {
+hal::Result<void> check_value(const SettingRule& rule, const SettingValue& value, std::string_view written) {
   const Given given{value, written};
-  switch (setting.type) {
+  switch (rule.type) {
     case SettingType::identifier:
     case SettingType::text:
     case SettingType::choice:
-      return check_text(setting, given);
+      return check_text(rule, given);
     case SettingType::whole:
     case SettingType::real:
-      return check_number(setting, given);
+      return check_number(rule, given);
+    case SettingType::flag:
+      if (std::holds_alternative<bool>(value)) return {};
+      return bad_value(rule, given, ErrorCode::bad_format);
     case SettingType::whole_list:
-      return check_whole_list(setting, given);
+      return check_whole_list(rule, given);
+    case SettingType::whole_tuple:
+    case SettingType::real_tuple:
+      return check_tuple(rule, given);
+    case SettingType::real_rows:
+      return check_rows(rule, given);
     case SettingType::real_pair:
-      return check_real_pair(setting, given);
+      return check_real_pair(rule, given);
   }
   return {};
 }
@@ -277,16 +330,23 @@ hal::Result<void> set(Board& board, const Setting& setting, std::string_view tex
   return {};
 }
 
-std::string reference_table(std::string_view section) {
+std::string reference_table(std::span<const SettingRule* const> rules) {
   std::string table = "| key | value | default | meaning |\n|---|---|---|---|\n";
-  for (const Setting& setting : settings()) {
-    if (setting.section != section) continue;
-    const std::string standard = setting.required   ? "required"
-                                 : setting.fallback ? "`" + quoted(*setting.fallback) + "`"
-                                                    : "-";
-    table += fmt::format("| `{}` | {} | {} | {} |\n", setting.key, setting.expectation(), standard, setting.meaning);
+  for (const SettingRule* rule : rules) {
+    const std::string standard = rule->required   ? "required"
+                                 : rule->fallback ? "`" + quoted(*rule->fallback) + "`"
+                                                  : "-";
+    table += fmt::format("| `{}` | {} | {} | {} |\n", rule->key, rule->expectation(), standard, rule->meaning);
   }
   return table;
+}
+
+std::string reference_table(std::string_view section) {
+  std::vector<const SettingRule*> rules;
+  for (const Setting& setting : settings()) {
+    if (setting.section == section) rules.push_back(&setting);
+  }
+  return reference_table(rules);
 }
 
 }  // namespace compueye::firmware

@@ -51,7 +51,22 @@ std::string_view kind_of(toml::node_type type) noexcept {
   }
 }
 
+SettingValue rows_value(const toml::array& list) {
+  NumberRows rows;
+  for (const toml::node& item : list) {
+    const toml::array* row = item.as_array();
+    if (row == nullptr) return ForeignValue{"a list of lists and others"};
+    rows.emplace_back();
+    for (const toml::node& number : *row) {
+      if (!number.is_number()) return ForeignValue{"a list of lists with something other than numbers"};
+      rows.back().push_back(*number.value<double>());
+    }
+  }
+  return rows;
+}
+
 SettingValue list_value(const toml::array& list) {
+  if (!list.empty() && list.front().is_array()) return rows_value(list);
   std::vector<std::int64_t> whole;
   std::vector<double> real;
   for (const toml::node& item : list) {
@@ -91,7 +106,7 @@ hal::Result<void> refuse_deep_nesting(std::string_view text, const std::string& 
     dots += c == '.' ? 1 : 0;
     if (dots > most_dots) {
       return hal::fail(hal::ErrorCode::bad_format, fmt::format("{}:{}", file, line),
-                       fmt::format("the line has more than {} dots, which no board file needs", most_dots));
+                       fmt::format("the line has more than {} dots, which no file of ours needs", most_dots));
     }
     if (c == '\n') {
       ++line;
@@ -125,17 +140,26 @@ hal::Result<TomlDocument> parse_toml(std::string_view text, const std::string& f
   }
 
   TomlDocument document;
+  const auto add = [&](const std::string& section, const toml::table& table, int line, int number, bool listed) {
+    document.sections.push_back({section, line, number, listed});
+    for (const auto& [key, value] : table) {
+      document.entries.push_back({section, std::string(key.str()), value_of(value), line_of(key.source()),
+                                  written_number(text, value), number});
+    }
+  };
   for (const auto& [name, node] : parsed.table()) {
     const std::string section(name.str());
-    const toml::table* table = node.as_table();
-    if (table == nullptr) {
+    const toml::array* list = node.as_array();
+    if (const toml::table* table = node.as_table()) {
+      add(section, *table, line_of(name.source()), 0, false);
+    } else if (list != nullptr && list->is_array_of_tables()) {
+      int number = 0;
+      for (const toml::node& item : *list) {
+        add(section, *item.as_table(), line_of(item.source()), number, true);
+        ++number;
+      }
+    } else {
       document.entries.push_back({{}, section, value_of(node), line_of(name.source()), {}});
-      continue;
-    }
-    document.sections.push_back({section, line_of(name.source())});
-    for (const auto& [key, value] : *table) {
-      document.entries.push_back(
-          {section, std::string(key.str()), value_of(value), line_of(key.source()), written_number(text, value)});
     }
   }
   const auto by_line = [](const auto& a, const auto& b) { return a.line < b.line; };

@@ -12,6 +12,8 @@ namespace compueye::firmware {
 struct TomlSection {
   std::string name;
   int line = 0;
+  int number = 0;       ///< which [[name]], from 0
+  bool listed = false;  ///< [[name]], not [name]
 };
 
 /// `section` is empty for a key above the first [section].
@@ -21,6 +23,7 @@ struct TomlEntry {
   SettingValue value;
   int line = 0;
   std::string written;  ///< a number as the file spells it, "8.0"; empty: anything else
+  int number = 0;       ///< of its section
 };
 
 /// A TOML file of one level of sections, flat and in the order of its lines.
