@@ -32,6 +32,10 @@ struct Display {
 
 enum class Forced { off, on };
 
+/// No place, size or way is larger, no scene longer.
+inline constexpr double farthest_mm = 1e6;
+inline constexpr double longest_scene_s = 1e6;
+
 /// What stands before the eye, and how it changes.
 struct Scene {
   std::string name;
@@ -42,6 +46,8 @@ struct Scene {
   std::map<std::string, Forced> effects = {};  ///< by an effect's name: what is not the planner's to decide
 
   [[nodiscard]] bool still() const noexcept;
+  /// Its duration, or the first hour of a scene that goes on for ever.
+  [[nodiscard]] double seconds_to_judge() const noexcept;
 };
 
 /// The picture stretched over the whole object plane.
@@ -50,9 +56,14 @@ struct Scene {
 /// The pictures of the surfaces that do not shine times Light::level, which is 1 then.
 [[nodiscard]] Scene lit(Scene scene);
 
-/// Errors: usage (no surface), mismatch (rows, columns and number of pixels disagree; bands of several sizes),
-/// out_of_range (empty, a size, distance or rate outside its range, a pixel that is negative, NaN or infinite, named by
-/// row and column). The place is the surface's name or the scene's.
+/// Errors: usage (no surface), mismatch (rows, columns and number of pixels disagree; bands of several sizes; times of
+/// a path that do not ascend; heights without a relief; a sphere that is none), out_of_range (empty, a size, distance
+/// or rate outside its range, a pixel that is negative, NaN or infinite, named by row and column). The place is the
+/// surface's name or the scene's.
 [[nodiscard]] hal::Result<void> validate(const Scene& scene);
+
+/// What moves stays before the lens tip and within farthest_mm, within seconds_to_judge(). Of a scene that validate()
+/// takes; error out_of_range with the surface's name.
+[[nodiscard]] hal::Result<void> validate_travel(const Scene& scene, double object_distance_mm);
 
 }  // namespace compueye::sim
