@@ -37,10 +37,6 @@ Workings begin(const EyeToSimulate& board, const Scene& scene, std::uint64_t see
 
 }  // namespace
 
-double EyeToSimulate::integration_s() const noexcept {
-  return detector.integration_ms > 0.0 ? std::min(detector.integration_ms * 1e-3, period_s()) : period_s();
-}
-
 struct Simulation::Parts {
   EyeToSimulate board;
   Scene scene;

@@ -1,21 +1,8 @@
 #include "sim/effects/effect_list.hpp"
 #include "sim/effects/estimates.hpp"
+#include "sim/effects/frame_step.hpp"
 
 namespace compueye::sim {
-namespace {
-
-class Step final : public FrameStep {
- public:
-  explicit Step(double level_lsb) : level_lsb_(level_lsb) {}
-  void apply(FrameInWork& frame) noexcept override {
-    for (double& level : frame.levels_lsb) level += level_lsb_;
-  }
-
- private:
-  double level_lsb_;
-};
-
-}  // namespace
 
 // Bound: what is added, exactly.
 const Effect effect::dark_level{
@@ -29,8 +16,12 @@ const Effect effect::dark_level{
     },
     .bound = [](const Circumstances& c) { return c.board.sensor.dark_level_lsb; },
     .cost = [](const Circumstances& c) { return step_cost(c, 0.5); },
-    .apply = [](const Circumstances& c,
-                Workings& w) { w.steps.push_back(std::make_unique<Step>(c.board.sensor.dark_level_lsb)); },
+    .apply =
+        [](const Circumstances& c, Workings& w) {
+          add_step(w, [dark = c.board.sensor.dark_level_lsb](FrameInWork& frame) noexcept {
+            for (double& level : frame.levels_lsb) level += dark;
+          });
+        },
 };
 
 }  // namespace compueye::sim

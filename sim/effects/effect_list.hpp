@@ -7,8 +7,18 @@
 #define COMPUEYE_EFFECTS(EFFECT) \
   EFFECT(off_plane)              \
   EFFECT(motion)                 \
+  EFFECT(gain_spread)            \
+  EFFECT(temperature)            \
+  EFFECT(dark_current)           \
+  EFFECT(shot_noise)             \
+  EFFECT(full_well)              \
+  EFFECT(offset_spread)          \
+  EFFECT(defects)                \
   EFFECT(dark_level)             \
-  EFFECT(read_noise)
+  EFFECT(mux_memory)             \
+  EFFECT(nonlinearity)           \
+  EFFECT(read_noise)             \
+  EFFECT(flicker_noise)
 
 namespace compueye::sim::effect {
 

@@ -1,25 +1,22 @@
 #include "sim/effects/effect_list.hpp"
 #include "sim/effects/estimates.hpp"
+#include "sim/effects/frame_step.hpp"
 #include "sim/random/random.hpp"
 
 namespace compueye::sim {
 namespace {
 
-class Step final : public FrameStep {
- public:
-  Step(std::uint64_t seed, double rms_lsb) : seed_(seed), rms_lsb_(rms_lsb) {}
-  void apply(FrameInWork& frame) noexcept override {
+void apply(const Circumstances& c, Workings& w) {
+  const double rms = c.board.sensor.read_noise_lsb;
+  if (!(rms > 0.0)) return;
+  add_step(w, [rms, seed = w.seed](FrameInWork& frame) noexcept {
     for (std::size_t m = 0; m < frame.levels_lsb.size(); ++m) {
       // Draws::read_noise, not draws_of("read_noise"): recorded samples hang on these draws.
-      RandomStream random({seed_, Draws::read_noise, frame.frame, static_cast<std::uint32_t>(m)});
-      frame.levels_lsb[m] += rms_lsb_ * random.gaussian();
+      RandomStream random({seed, Draws::read_noise, frame.frame, static_cast<std::uint32_t>(m)});
+      frame.levels_lsb[m] += rms * random.gaussian();
     }
-  }
-
- private:
-  std::uint64_t seed_;
-  double rms_lsb_;
-};
+  });
+}
 
 }  // namespace
 
@@ -35,8 +32,7 @@ const Effect effect::read_noise{
     },
     .bound = [](const Circumstances& c) { return c.board.sensor.read_noise_lsb; },
     .cost = [](const Circumstances& c) { return step_cost(c, 40.0); },
-    .apply = [](const Circumstances& c,
-                Workings& w) { w.steps.push_back(std::make_unique<Step>(w.seed, c.board.sensor.read_noise_lsb)); },
+    .apply = apply,
 };
 
 }  // namespace compueye::sim
