@@ -19,7 +19,7 @@ struct Generator {
   hal::Result<hal::Image> (*render)(int rows, int cols, std::uint64_t seed) = nullptr;
 };
 
-constexpr std::array<Generator, 5> generators{{
+constexpr std::array<Generator, 9> generators{{
     {{"line-art", "a line drawing, 23 % of the pixels lit (seed 0: a butterfly; others: house, fish, boat, butterfly)"},
      [](int rows, int cols, std::uint64_t seed) -> hal::Result<hal::Image> {
        return pictures::line_art(rows, cols, seed);
@@ -38,6 +38,19 @@ constexpr std::array<Generator, 5> generators{{
      }},
     {{"fig2", "a face of 19 pixels on 16x16, enlarged by whole factors; the same for every seed"},
      [](int rows, int cols, std::uint64_t) { return pictures::fig2(rows, cols); }},
+    {{"text", "an eye chart of six lines (seed 0: the same letters; others: drawn at random)"},
+     [](int rows, int cols, std::uint64_t seed) -> hal::Result<hal::Image> {
+       return pictures::text(rows, cols, seed);
+     }},
+    {{"star", "a Siemens star of 36 spokes; the same for every seed"},
+     [](int rows, int cols, std::uint64_t) -> hal::Result<hal::Image> { return pictures::siemens_star(rows, cols); }},
+    {{"slanted-edge",
+      "dark and light along an edge 5 degrees off upright, as in ISO 12233 (odd seeds: light on the left)"},
+     [](int rows, int cols, std::uint64_t seed) -> hal::Result<hal::Image> {
+       return pictures::slanted_edge(rows, cols, seed);
+     }},
+    {{"white", "white all over"},
+     [](int rows, int cols, std::uint64_t) -> hal::Result<hal::Image> { return hal::Image(rows, cols, 1.0F); }},
 }};
 
 constexpr auto listed = [] {

@@ -43,39 +43,11 @@ Strokes drawing(std::uint64_t seed) {
   return strokes;
 }
 
-float distance(double x, double y, Point a, Point b) {
-  const double ex = b.x - a.x, ey = b.y - a.y;
-  const double length2 = ex * ex + ey * ey;
-  const double along = length2 > 0.0 ? std::clamp(((x - a.x) * ex + (y - a.y) * ey) / length2, 0.0, 1.0) : 0.0;
-  const double dx = x - a.x - along * ex, dy = y - a.y - along * ey;
-  return static_cast<float>(std::sqrt(dx * dx + dy * dy));
-}
-
-// Distance of every pixel centre to the nearest stroke, in pixels; infinite beyond `reach`.
-hal::Image distances(const Strokes& strokes, int rows, int cols, double reach) {
-  hal::Image field(rows, cols, std::numeric_limits<float>::infinity());
-  const double side = std::min(rows, cols);
-  const double left = (cols - side) / 2.0, top = (rows - side) / 2.0;
-  const auto clip = [](double v, int n) { return std::clamp(static_cast<int>(v), 0, n); };
-  for (const Strokes::Segment& segment : strokes.segments()) {
-    const Point a{left + side * segment.a.x, top + side * segment.a.y};
-    const Point b{left + side * segment.b.x, top + side * segment.b.y};
-    const int first_col = clip(std::min(a.x, b.x) - reach, cols), last_col = clip(std::max(a.x, b.x) + reach + 1, cols);
-    const int first_row = clip(std::min(a.y, b.y) - reach, rows), last_row = clip(std::max(a.y, b.y) + reach + 1, rows);
-    for (int row = first_row; row < last_row; ++row) {
-      for (int col = first_col; col < last_col; ++col) {
-        field.at(row, col) = std::min(field.at(row, col), distance(col + 0.5, row + 0.5, a, b));
-      }
-    }
-  }
-  return field;
-}
-
 }  // namespace
 
 hal::Image line_art(int rows, int cols, std::uint64_t seed) {
   const double side = std::min(rows, cols);
-  hal::Image picture = distances(drawing(seed), rows, cols, std::max(0.04 * side, 2.0));
+  hal::Image picture = distance_field(drawing(seed), rows, cols, std::max(0.04 * side, 2.0));
   // The pen is as wide as the wanted share of ink asks for: the distance that this share of the pixels falls below.
   std::vector<float> sorted = picture.pixels;
   const auto inked = sorted.begin() + static_cast<std::ptrdiff_t>(ink * side * side);

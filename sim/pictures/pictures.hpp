@@ -14,6 +14,9 @@ namespace compueye::sim::pictures {
 [[nodiscard]] hal::Image phantom(int rows, int cols, std::uint64_t seed);
 [[nodiscard]] hal::Image bars(int rows, int cols, std::uint64_t seed);
 [[nodiscard]] hal::Image dots(int rows, int cols, std::uint64_t seed);
+[[nodiscard]] hal::Image text(int rows, int cols, std::uint64_t seed);
+[[nodiscard]] hal::Image siemens_star(int rows, int cols);
+[[nodiscard]] hal::Image slanted_edge(int rows, int cols, std::uint64_t seed);
 /// Error out_of_range below 16x16.
 [[nodiscard]] hal::Result<hal::Image> fig2(int rows, int cols);
 

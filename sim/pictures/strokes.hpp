@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "hal/image.hpp"
+
 namespace compueye::sim::pictures {
 
 struct Point {
@@ -31,6 +33,10 @@ class Strokes {
  private:
   std::vector<Segment> segments_;
 };
+
+/// Distance of every pixel's centre to the nearest stroke, in pixels; infinite beyond `reach`. The unit square is the
+/// largest square in the middle of the picture.
+[[nodiscard]] hal::Image distance_field(const Strokes& strokes, int rows, int cols, double reach);
 
 /// The drawings that line art chooses from; all fill the square evenly and are some 9 to 12 side lengths of ink long.
 [[nodiscard]] Strokes draw_butterfly();

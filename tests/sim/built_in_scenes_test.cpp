@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -46,7 +47,7 @@ TEST_CASE("every built-in scene renders at any size, within 0..1, the same for t
 }
 
 TEST_CASE("other seeds give other pictures") {
-  for (const char* name : {"line-art", "phantom", "bars", "dots"}) {
+  for (const char* name : {"line-art", "phantom", "bars", "dots", "text"}) {
     CAPTURE(name);
     std::set<std::vector<float>> pictures;
     for (std::uint64_t seed = 0; seed < 12; ++seed) pictures.insert(render_built_in(name, 64, 64, seed)->pixels);
@@ -112,4 +113,65 @@ TEST_CASE("sizes beyond the range are refused by value") {
     test::check_error(result, hal::ErrorCode::out_of_range, "scene 'dots'",
                       {std::to_string(rows) + "x" + std::to_string(cols)});
   }
+}
+
+TEST_CASE("the star has 36 spokes at any radius, mirrored in both axes") {
+  const hal::Image star = *render_built_in("star", 400, 400, 0);
+  // Round a circle of 120 pixels light changes to dark and back 36 times: the angle by which it does is counted here
+  // with trigonometry, of which the picture's own code has none.
+  int changes = 0;
+  bool before = false;
+  constexpr int steps = 3600;
+  for (int k = 0; k <= steps; ++k) {
+    const double angle = 2.0 * std::acos(-1.0) * (k + 0.5) / steps;
+    const bool now = star.at(static_cast<int>(std::floor(200.0 + 120.0 * std::sin(angle))),
+                             static_cast<int>(std::floor(200.0 + 120.0 * std::cos(angle)))) > 0.5F;
+    if (k > 0 && now != before) ++changes;
+    before = now;
+  }
+  CHECK(changes == 72);
+  for (int row = 0; row < 200; row += 7) {
+    for (int col = 0; col < 200; col += 3) {
+      const float light = star.at(row, col), across = star.at(row, 399 - col);
+      const double x = col + 0.5 - 200.0, y = row + 0.5 - 200.0;
+      if (x * x + y * y > 191.0 * 191.0) continue;
+      CHECK(light + across == doctest::Approx(1.0));
+      CHECK(star.at(399 - row, 399 - col) == doctest::Approx(light));
+    }
+  }
+  CHECK(star.at(0, 0) == 0.0F);
+}
+
+TEST_CASE("the slanted edge runs at 5 degrees through the middle") {
+  const hal::Image edge = *render_built_in("slanted-edge", 200, 300, 0);
+  const double tangent = std::tan(5.0 * std::acos(-1.0) / 180.0);
+  for (int row = 0; row < edge.rows; ++row) {
+    // Where it stands in a row follows from the row's sum: dark .1, light .9.
+    double sum = 0.0;
+    for (int col = 0; col < edge.cols; ++col) sum += static_cast<double>(edge.at(row, col));
+    const double at = (0.9 * edge.cols - sum) / 0.8;
+    CHECK(at == doctest::Approx(150.0 + tangent * (row + 0.5 - 100.0)).epsilon(1e-6));
+  }
+  CHECK(edge.at(0, 0) == doctest::Approx(0.1));
+  CHECK(render_built_in("slanted-edge", 200, 300, 1)->at(0, 0) == doctest::Approx(0.9));
+}
+
+TEST_CASE("the text has letters of other sizes in every line, and other letters by seed") {
+  const hal::Image chart = *render_built_in("text", 640, 640, 0);
+  // A line's height is told from the rows that are inked: six runs, each shorter than the one above.
+  std::vector<int> runs;
+  bool inked = false;
+  for (int row = 0; row < chart.rows; ++row) {
+    bool any = false;
+    for (int col = 0; col < chart.cols; ++col) any = any || chart.at(row, col) > 0.5F;
+    if (any && !inked) runs.push_back(0);
+    if (any) ++runs.back();
+    inked = any;
+  }
+  REQUIRE(runs.size() == 6);
+  for (std::size_t n = 1; n < runs.size(); ++n) CHECK(runs[n] < runs[n - 1]);
+  CHECK(runs.front() == doctest::Approx(0.22 * 640 * 8.0 / 7.0).epsilon(0.03));
+  CHECK(chart.pixels != render_built_in("text", 640, 640, 1)->pixels);
+  CHECK(lit_share(chart) > 0.05);
+  CHECK(lit_share(chart) < 0.3);
 }
