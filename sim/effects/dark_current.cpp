@@ -12,6 +12,12 @@ double dark_lsb(const Circumstances& c) noexcept {
   return dark_charge_lsb(c.board, c.board.detector.temperature_c);
 }
 
+void apply(const Circumstances& c, Workings& w) {
+  add_step(w, [dark = dark_lsb(c)](FrameInWork& frame) noexcept {
+    for (double& level : frame.levels_lsb) level += dark;
+  });
+}
+
 }  // namespace
 
 // Bound: the mean charge, exactly, and its shot noise, which the effect of that name draws from what it finds.
@@ -30,12 +36,7 @@ const Effect effect::dark_current{
           return std::sqrt(dark * dark + dark / c.board.detector.electrons_per_lsb);
         },
     .cost = [](const Circumstances& c) { return step_cost(c, 0.5); },
-    .apply =
-        [](const Circumstances& c, Workings& w) {
-          add_step(w, [dark = dark_lsb(c)](FrameInWork& frame) noexcept {
-            for (double& level : frame.levels_lsb) level += dark;
-          });
-        },
+    .apply = apply,
 };
 
 }  // namespace compueye::sim

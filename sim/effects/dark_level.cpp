@@ -3,6 +3,15 @@
 #include "sim/effects/frame_step.hpp"
 
 namespace compueye::sim {
+namespace {
+
+void apply(const Circumstances& c, Workings& w) {
+  add_step(w, [dark = c.board.sensor.dark_level_lsb](FrameInWork& frame) noexcept {
+    for (double& level : frame.levels_lsb) level += dark;
+  });
+}
+
+}  // namespace
 
 // Bound: what is added, exactly.
 const Effect effect::dark_level{
@@ -16,12 +25,7 @@ const Effect effect::dark_level{
     },
     .bound = [](const Circumstances& c) { return c.board.sensor.dark_level_lsb; },
     .cost = [](const Circumstances& c) { return step_cost(c, 0.5); },
-    .apply =
-        [](const Circumstances& c, Workings& w) {
-          add_step(w, [dark = c.board.sensor.dark_level_lsb](FrameInWork& frame) noexcept {
-            for (double& level : frame.levels_lsb) level += dark;
-          });
-        },
+    .apply = apply,
 };
 
 }  // namespace compueye::sim

@@ -38,6 +38,12 @@ double bound(const Circumstances& c) {
   return std::sqrt(squares / static_cast<double>(c.preview.levels.size()));
 }
 
+void apply(const Circumstances& c, Workings& w) {
+  add_step(w, [capacity = capacity_lsb(c.board.detector)](FrameInWork& frame) noexcept {
+    for (double& level : frame.levels_lsb) level = std::min(level, capacity);
+  });
+}
+
 }  // namespace
 
 const Effect effect::full_well{
@@ -48,12 +54,7 @@ const Effect effect::full_well{
     .calls_for = calls_for,
     .bound = bound,
     .cost = [](const Circumstances& c) { return step_cost(c, 0.5); },
-    .apply =
-        [](const Circumstances& c, Workings& w) {
-          add_step(w, [capacity = capacity_lsb(c.board.detector)](FrameInWork& frame) noexcept {
-            for (double& level : frame.levels_lsb) level = std::min(level, capacity);
-          });
-        },
+    .apply = apply,
 };
 
 }  // namespace compueye::sim

@@ -24,6 +24,12 @@ double bound(const Circumstances& c) {
   return margin * std::sqrt(squares / static_cast<double>(drawn.size()));
 }
 
+void apply(const Circumstances& c, Workings& w) {
+  add_step(w, [changes = changes(c)](FrameInWork& frame) noexcept {
+    for (std::size_t m = 0; m < frame.levels_lsb.size(); ++m) frame.levels_lsb[m] *= 1.0 + changes[m];
+  });
+}
+
 }  // namespace
 
 const Effect effect::gain_spread{
@@ -37,12 +43,7 @@ const Effect effect::gain_spread{
     },
     .bound = bound,
     .cost = [](const Circumstances& c) { return step_cost(c, 0.5); },
-    .apply =
-        [](const Circumstances& c, Workings& w) {
-          add_step(w, [changes = changes(c)](FrameInWork& frame) noexcept {
-            for (std::size_t m = 0; m < frame.levels_lsb.size(); ++m) frame.levels_lsb[m] *= 1.0 + changes[m];
-          });
-        },
+    .apply = apply,
 };
 
 }  // namespace compueye::sim

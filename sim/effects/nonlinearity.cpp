@@ -27,6 +27,12 @@ double bound(const Circumstances& c) {
   return margin * std::sqrt(squares / static_cast<double>(c.preview.levels.size()));
 }
 
+void apply(const Circumstances& c, Workings& w) {
+  add_step(w, [inl = c.board.detector.inl_lsb, full = full_lsb(c)](FrameInWork& frame) noexcept {
+    for (double& level : frame.levels_lsb) level += bow(inl, full, level);
+  });
+}
+
 }  // namespace
 
 const Effect effect::nonlinearity{
@@ -40,12 +46,7 @@ const Effect effect::nonlinearity{
     },
     .bound = bound,
     .cost = [](const Circumstances& c) { return step_cost(c, 1.0); },
-    .apply =
-        [](const Circumstances& c, Workings& w) {
-          add_step(w, [inl = c.board.detector.inl_lsb, full = full_lsb(c)](FrameInWork& frame) noexcept {
-            for (double& level : frame.levels_lsb) level += bow(inl, full, level);
-          });
-        },
+    .apply = apply,
 };
 
 }  // namespace compueye::sim
