@@ -7,6 +7,15 @@
 #define COMPUEYE_EFFECTS(EFFECT) \
   EFFECT(off_plane)              \
   EFFECT(motion)                 \
+  EFFECT(misalignment)           \
+  EFFECT(acceptance_spread)      \
+  EFFECT(refraction)             \
+  EFFECT(diffraction)            \
+  EFFECT(angular_profile)        \
+  EFFECT(coma)                   \
+  EFFECT(vignetting)             \
+  EFFECT(dust)                   \
+  EFFECT(crosstalk)              \
   EFFECT(gain_spread)            \
   EFFECT(temperature)            \
   EFFECT(dark_current)           \

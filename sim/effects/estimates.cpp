@@ -61,4 +61,9 @@ EffectCost render_cost(const Circumstances& c, double renders) noexcept {
   return {0.0, renders * ommatidium_s * c.board.eye.ommatidia() * static_cast<double>(c.scene.surfaces.size())};
 }
 
+EffectCost render_once_cost(const Circumstances& c, double renders) noexcept {
+  const double once = render_cost(c, renders).frame_s;
+  return {once, c.scene.still() ? 0.0 : once};
+}
+
 }  // namespace compueye::sim

@@ -39,4 +39,7 @@ inline constexpr double longest_s = 3600.0;
 /// Of rendering the whole scene `renders` times more a frame.
 [[nodiscard]] EffectCost render_cost(const Circumstances& c, double renders) noexcept;
 
+/// The same where what is rendered does not change unless something moves.
+[[nodiscard]] EffectCost render_once_cost(const Circumstances& c, double renders) noexcept;
+
 }  // namespace compueye::sim

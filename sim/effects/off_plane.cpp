@@ -62,11 +62,7 @@ const Effect effect::off_plane{
     .error = ErrorKind::row_shape,
     .calls_for = calls_for,
     .bound = bound,
-    .cost =
-        [](const Circumstances& c) {
-          EffectCost cost = render_cost(c, 1.0);
-          return EffectCost{cost.frame_s, c.scene.still() ? 0.0 : cost.frame_s};
-        },
+    .cost = [](const Circumstances& c) { return render_once_cost(c, 1.0); },
     .apply = [](const Circumstances&, Workings& w) { w.render.true_depth = true; },
 };
 
