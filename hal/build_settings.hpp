@@ -24,11 +24,13 @@ struct BuildSettings {
   double edge_order = 8.0;        ///< soft alone: 1 .. 64; the larger, the nearer to a flat top
   double coma = 0.0;              ///< outer shells look aside by this share of D/2, away from the eye's front, 0 .. 0.5
   double lens_diameter_mm = 0.0;  ///< of an ommatidium; 0: so large that nothing is diffracted
-  double refractive_index = 1.0;  ///< before the photodiode, 1 .. 2.5; the board's acceptance angle is 2 dphi inside
-  double dust_share = 0.0;        ///< of the ommatidia, 0 .. 1
-  double dust_loss = 0.3;         ///< of the light of a dusty ommatidium, on one half of its view, 0 .. 1
-  double crosstalk = 0.0;         ///< of a channel's signal that its four neighbours share, 0 .. 0.5
-  double gain_spread = 0.0;       ///< PRNU, relative, normal, 0 .. 0.5
+  /// Before the photodiode, 1 .. 2.5. The board's acceptance angle is n times that inside; by Snell it is
+  /// 2 asin(n sin(angle / 2n)).
+  double refractive_index = 1.0;
+  double dust_share = 0.0;         ///< of the ommatidia, 0 .. 1
+  double dust_loss = 0.3;          ///< of the light of a dusty ommatidium, on one half of its view, 0 .. 1
+  double crosstalk = 0.0;          ///< of a channel's signal that its four neighbours share, 0 .. 0.5
+  double gain_spread = 0.0;        ///< PRNU, relative, normal, 0 .. 0.5
   double offset_spread_lsb = 0.0;  ///< DSNU, LSB, normal, 0 .. 4096
   double vignetting = 0.0;         ///< light of a ray at angle t from z falls as cos^vignetting t, 0 .. 8
 

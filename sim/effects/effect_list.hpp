@@ -6,7 +6,15 @@
 /// the same thing, the later one finds what the earlier one made of it.
 #define COMPUEYE_EFFECTS(EFFECT) \
   EFFECT(off_plane)              \
+  EFFECT(occlusion)              \
   EFFECT(motion)                 \
+  EFFECT(display_response)       \
+  EFFECT(pixel_blur)             \
+  EFFECT(display_refresh)        \
+  EFFECT(light_falloff)          \
+  EFFECT(spectral_response)      \
+  EFFECT(lamp_drift)             \
+  EFFECT(mains_flicker)          \
   EFFECT(misalignment)           \
   EFFECT(acceptance_spread)      \
   EFFECT(refraction)             \
@@ -27,7 +35,9 @@
   EFFECT(mux_memory)             \
   EFFECT(nonlinearity)           \
   EFFECT(read_noise)             \
-  EFFECT(flicker_noise)
+  EFFECT(flicker_noise)          \
+  EFFECT(sampling_skew)          \
+  EFFECT(motion_blur)
 
 namespace compueye::sim::effect {
 

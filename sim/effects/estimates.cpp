@@ -13,16 +13,14 @@ std::string figure(double value) {
   return text;
 }
 
-double seconds_looked_at(const Circumstances& c) noexcept {
-  return c.scene.duration_s > 0.0 ? c.scene.duration_s : longest_s;
+double speed_mm_per_s(const Surface& surface) noexcept {
+  const double corner = std::hypot(surface.width_mm, surface.height_mm) / 2.0;
+  return surface.motion.speed_mm_per_s() + surface.motion.turning_rad_per_s() * corner;
 }
 
 double speed_mm_per_s(const Circumstances& c) noexcept {
   double fastest = 0.0;
-  for (const Surface& surface : c.scene.surfaces) {
-    const double corner = std::hypot(surface.width_mm, surface.height_mm) / 2.0;
-    fastest = std::max(fastest, surface.motion.speed_mm_per_s() + surface.motion.turning_rad_per_s() * corner);
-  }
+  for (const Surface& surface : c.scene.surfaces) fastest = std::max(fastest, speed_mm_per_s(surface));
   return fastest;
 }
 

@@ -9,16 +9,11 @@ namespace compueye::sim {
 /// What bounds allow for the preview's few per cent and for what other effects do to the levels.
 inline constexpr double margin = 1.25;
 
-/// Of an endless scene bounds look at so many seconds.
-inline constexpr double longest_s = 3600.0;
-
 /// "0.25", "1.2e+03": three digits, for a reason in words.
 [[nodiscard]] std::string figure(double value);
 
-/// Seconds that are looked at: the scene's duration, or longest_s.
-[[nodiscard]] double seconds_looked_at(const Circumstances& c) noexcept;
-
-/// Of the fastest surface with its turning, at its farthest corner: mm/s.
+/// Of a surface with its turning, at its farthest corner: mm/s. And of the fastest of the scene.
+[[nodiscard]] double speed_mm_per_s(const Surface& surface) noexcept;
 [[nodiscard]] double speed_mm_per_s(const Circumstances& c) noexcept;
 
 /// From an apex to the object plane, about.

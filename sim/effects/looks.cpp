@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sim/effects/estimates.hpp"
 
@@ -56,6 +57,17 @@ Across across(const Vec3& unit) noexcept {
   const Vec3 side = sum(1.0, least, -dot(unit, least), unit);
   const Vec3 first = sum(1.0 / std::sqrt(dot(side, side)), side, 0.0, side);
   return {first, cross(unit, first)};
+}
+
+LookAt look_at(const Circumstances& c, int m) noexcept {
+  const hal::EyeGeometry& eye = c.board.eye;
+  const Look look = look_of(c, static_cast<std::size_t>(m));
+  const Vec3 apex = eye.apex(m / eye.columns, m % eye.columns), axis = eye.axis(m / eye.columns, m % eye.columns);
+  const double half = eye.acceptance_rad / 2.0, s = std::sin(half);
+  const double q = std::max(look.cosine * look.cosine - s * s, 0.01);
+  const double range = look.height_mm / look.cosine;
+  return {apex.x + range * axis.x, apex.y + range * axis.y, look.height_mm * s * std::cos(half) / q,
+          std::numbers::pi * look.height_mm * look.height_mm * ellipse(look.cosine, half)};
 }
 
 double shifted_change_lsb(const Circumstances& c, std::span<const double> turned_rad,

@@ -28,6 +28,14 @@ struct Across {
 /// the mean within by (radius^2 / 8) times the sum of the second derivatives.
 [[nodiscard]] double widened_change_lsb(const Circumstances& c, std::span<const double> half_rad);
 
+/// Where on the object plane ommatidium m looks: right and up of the axis of the eye, and the radius of what it sees
+/// there along its longer side.
+struct LookAt {
+  double x_mm = 0.0, y_mm = 0.0, radius_mm = 0.0;
+  double area_mm2 = 0.0;
+};
+[[nodiscard]] LookAt look_at(const Circumstances& c, int m) noexcept;
+
 /// Widest half angle that a cone may have.
 inline constexpr double widest_half_rad = 1.0471;
 

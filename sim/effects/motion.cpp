@@ -16,7 +16,7 @@ std::string calls_for(const Circumstances& c) {
 // on, what comes into a look has nothing to do with what left it: the change is at most that of a look full of the
 // brightest there is, about.
 double bound(const Circumstances& c) {
-  const double way = speed_mm_per_s(c) * seconds_looked_at(c);
+  const double way = speed_mm_per_s(c) * c.scene.seconds_to_judge();
   const double along = margin * c.preview.gradient_rms * way;
   if (way < look_radius_mm(c) / 2.0) return along;
   const double other = std::max(2.0 * c.preview.rms, brightest(c) * white_lsb(c) / 2.0);

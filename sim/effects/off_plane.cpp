@@ -13,7 +13,7 @@ double depth_mm(const Circumstances& c, const Surface& surface) noexcept {
   const double corner = std::hypot(surface.width_mm, surface.height_mm) / 2.0;
   const Motion& motion = surface.motion;
   const bool still = motion.still();
-  const Pose end = motion.moved(surface.pose, seconds_looked_at(c));
+  const Pose end = motion.moved(surface.pose, c.scene.seconds_to_judge());
   double turned = std::hypot(surface.pose.tilt_rad, surface.pose.lean_rad);
   double farther = std::fabs(surface.distance_mm.value_or(distance) - distance);
   if (!still) {

@@ -10,7 +10,7 @@ namespace compueye::sim {
 namespace {
 
 double end_c(const Circumstances& c) noexcept {
-  return temperature_c(c.board.detector, seconds_looked_at(c));
+  return temperature_c(c.board.detector, c.scene.seconds_to_judge());
 }
 
 /// Largest relative change of the gains.
