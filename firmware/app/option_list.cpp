@@ -128,7 +128,7 @@ void OptionList::settings(std::string_view command, Overrides& overrides) {
 }
 
 void OptionList::scene(SceneChoice& scene, std::uint64_t& noise_seed) {
-  add("--scene", scene.name, "a built-in scene or a PNG file (default: the board's)");
+  add("--scene", scene.name, "a built-in scene, a PNG or a scene file (default: the board's)");
   add("--scene-seed", scene.seed, "which drawing of a built-in scene (default 0)").type("INT");
   add("--seed", noise_seed, "of the noise (default 0); the same seed gives the same samples").type("INT");
 }

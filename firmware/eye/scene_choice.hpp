@@ -12,7 +12,7 @@ namespace compueye::firmware {
 
 /// Which scene a command line asks for.
 struct SceneChoice {
-  std::string name;                   ///< a built-in scene or a PNG file; empty: the board's default
+  std::string name;                   ///< a built-in scene, a PNG or a scene file; empty: the board's default
   std::uint64_t seed = 0;             ///< which drawing of a built-in scene
   std::optional<double> distance_mm;  ///< from the lens tip, > 0; absent: on the object plane
 };
@@ -20,8 +20,8 @@ struct SceneChoice {
 /// The scene in front of the board's eye. A built-in one has the pixels of the object plane and covers it. A PNG keeps
 /// its own pixels, which are taken as square: it is centred and as large as the plane allows, black beyond. A path on
 /// the command line is relative to the working folder, one in board.toml to the board's folder.
-/// Errors: not_found (no such built-in scene, the nearest is named; no such file), unsupported (scene files in TOML),
-/// and those of read_png() and render_built_in().
+/// A scene file (.toml) says itself what it shows, whatever the seed. Errors: not_found (no such built-in scene, the
+/// nearest is named; no such file), and those of read_png(), render_built_in() and load_scene().
 [[nodiscard]] hal::Result<sim::Scene> choose_scene(const Board& board, const SceneChoice& choice);
 
 /// Every built-in scene with its description, a line each, for --help.

@@ -21,6 +21,9 @@ inline constexpr int max_png_side = 8192;
 /// (pixels that are not opaque, because what is behind them is not known), out_of_range (more than max_png_side).
 [[nodiscard]] hal::Result<hal::Image> read_png(const std::string& path);
 
+/// The same as its bands: red, green and blue, or one where every pixel is grey.
+[[nodiscard]] hal::Result<std::vector<hal::Image>> read_png_bands(const std::string& path);
+
 /// Writes a grey PNG of 8 or 16 bits atomically: code = round(value * (2^bits - 1)), values clipped to 0..1, NaN as 0.
 /// Errors: usage (bits, size), those of AtomicFile.
 [[nodiscard]] hal::Result<void> write_png(const std::string& path, const hal::Image& image, int bits = 8);

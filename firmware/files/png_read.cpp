@@ -126,20 +126,29 @@ struct Raster {
 };
 
 template <class Code>
-Result<hal::Image> to_grey(const std::string& path, const PngReader& reader) {
+Result<void> check_opaque(const std::string& path, const PngReader& reader) {
+  const Raster<Code> raster{reader};
+  if (reader.channels == 1 || reader.channels == 3) return {};
+  for (std::size_t row = 0; row < reader.rows; ++row) {
+    for (std::size_t col = 0; col < reader.cols; ++col) {
+      if (raster.code(row, col, reader.channels - 1) == std::numeric_limits<Code>::max()) continue;
+      return hal::fail(ErrorCode::unsupported, path,
+                       "is not opaque at row " + std::to_string(row) + ", column " + std::to_string(col) +
+                           ", expected a picture without transparency: flatten it onto its background first");
+    }
+  }
+  return {};
+}
+
+template <class Code>
+hal::Image to_grey(const PngReader& reader) {
   constexpr double white = std::numeric_limits<Code>::max();
   const Raster<Code> raster{reader};
   const bool colour = reader.channels >= 3;
-  const bool alpha = reader.channels == 2 || reader.channels == 4;
   hal::Image image(static_cast<int>(reader.rows), static_cast<int>(reader.cols));
   std::size_t at = 0;
   for (std::size_t row = 0; row < reader.rows; ++row) {
     for (std::size_t col = 0; col < reader.cols; ++col, ++at) {
-      if (alpha && raster.code(row, col, reader.channels - 1) != white) {
-        return hal::fail(ErrorCode::unsupported, path,
-                         "is not opaque at row " + std::to_string(row) + ", column " + std::to_string(col) +
-                             ", expected a picture without transparency: flatten it onto its background first");
-      }
       const double first = raster.code(row, col, 0);
       double grey = first;
       if (colour) {
@@ -151,6 +160,26 @@ Result<hal::Image> to_grey(const std::string& path, const PngReader& reader) {
     }
   }
   return image;
+}
+
+template <class Code>
+std::vector<hal::Image> to_bands(const PngReader& reader) {
+  constexpr double white = std::numeric_limits<Code>::max();
+  const Raster<Code> raster{reader};
+  std::vector<hal::Image> bands(reader.channels >= 3 ? 3 : 1,
+                                hal::Image(static_cast<int>(reader.rows), static_cast<int>(reader.cols)));
+  for (std::size_t band = 0; band < bands.size(); ++band) {
+    std::size_t at = 0;
+    for (std::size_t row = 0; row < reader.rows; ++row) {
+      for (std::size_t col = 0; col < reader.cols; ++col, ++at) {
+        bands[band].pixels[at] = static_cast<float>(raster.code(row, col, band) / white);
+      }
+    }
+  }
+  const bool grey =
+      bands.front().pixels == bands.back().pixels && bands.front().pixels == bands[bands.size() / 2].pixels;
+  if (grey) bands.resize(1);
+  return bands;
 }
 
 /// Pictures that people have and that are no PNG, by how their files begin.
@@ -173,9 +202,9 @@ Result<void> accept_begin(const std::string& path, std::string_view begin) {
           " picture, expected a PNG: convert it first, as ImageMagick's 'convert photo.jpg photo.png' does");
 }
 
-}  // namespace
-
-Result<hal::Image> read_png(const std::string& path) {
+/// What the function for the depth of the file, of 8 or 16 bits, makes of the picture.
+template <class Made>
+Result<Made> made_of(const std::string& path, Made (*of_8)(const PngReader&), Made (*of_16)(const PngReader&)) {
   // Incompressible RGBA of 16 bits at the largest size, with room for other chunks.
   constexpr std::uint64_t max_file_bytes = std::uint64_t{1} << 30U;
   const std::string bytes =
@@ -190,7 +219,18 @@ Result<hal::Image> read_png(const std::string& path) {
     reader.row_pointers[row] = reader.raster.data() + row * reader.stride;
   }
   if (!reader.run(PngReader::read_rows)) return damaged(path, reader);
-  return reader.wide ? to_grey<std::uint16_t>(path, reader) : to_grey<std::uint8_t>(path, reader);
+  TRY(reader.wide ? check_opaque<std::uint16_t>(path, reader) : check_opaque<std::uint8_t>(path, reader));
+  return reader.wide ? of_16(reader) : of_8(reader);
+}
+
+}  // namespace
+
+Result<hal::Image> read_png(const std::string& path) {
+  return made_of(path, to_grey<std::uint8_t>, to_grey<std::uint16_t>);
+}
+
+Result<std::vector<hal::Image>> read_png_bands(const std::string& path) {
+  return made_of(path, to_bands<std::uint8_t>, to_bands<std::uint16_t>);
 }
 
 }  // namespace compueye::firmware

@@ -132,6 +132,24 @@ TEST_CASE("an RGB picture is read as its luminance and grey stays exact") {
   CHECK(back.pixels[3] == 0.2F);
 }
 
+TEST_CASE("bands of a picture are its colours, and one where all are grey") {
+  const compueye::test::TemporaryFolder folder;
+  RgbImage image{1, 2, {255, 51, 0, 102, 102, 102}};
+  REQUIRE(write_png(folder / "colour.png", image).has_value());
+  const auto bands = read_png_bands(folder / "colour.png");
+  REQUIRE(bands.has_value());
+  REQUIRE(bands->size() == 3);
+  CHECK((*bands)[0].pixels == std::vector<float>{1.0F, 0.4F});
+  CHECK((*bands)[1].pixels == std::vector<float>{0.2F, 0.4F});
+  CHECK((*bands)[2].pixels == std::vector<float>{0.0F, 0.4F});
+  image.pixels = {51, 51, 51, 102, 102, 102};
+  REQUIRE(write_png(folder / "grey.png", image).has_value());
+  const auto grey = read_png_bands(folder / "grey.png");
+  REQUIRE(grey.has_value());
+  REQUIRE(grey->size() == 1);
+  CHECK(grey->front().pixels == std::vector<float>{0.2F, 0.4F});
+}
+
 TEST_CASE("every kind of PNG is read") {
   const TemporaryFolder folder;
   const auto pixels = [&](const HandMade& png) {

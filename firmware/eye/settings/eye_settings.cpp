@@ -140,8 +140,8 @@ void add_source(std::vector<Setting>& all) {
            .within({1, 4096})
            .otherwise(4)});
   add(all, "scene",
-      {field<&Board::scene, &SceneSettings::name>("default",
-                                                  "a built-in scene, or a PNG file (relative to the board's folder)")
+      {field<&Board::scene, &SceneSettings::name>(
+           "default", "a built-in scene, or a PNG or a scene file (relative to the board's folder)")
            .otherwise("line-art"),
        field<&Board::scene, &SceneSettings::frames_per_scene>("frames_per_scene",
                                                               "frames of each scene when the command line does not say")

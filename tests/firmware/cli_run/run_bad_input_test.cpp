@@ -23,7 +23,11 @@ TEST_CASE("a scene file that is missing or no picture is named") {
   std::ofstream(text) << "not a picture";
   check_refused(board.run_arguments({"--scene", missing.string()}), ErrorCode::not_found, missing.string(), {});
   check_refused(board.run_arguments({"--scene", text.string()}), ErrorCode::bad_format, text.string(), {"PNG"});
-  check_refused(board.run_arguments({"--scene", "scene.toml"}), ErrorCode::unsupported, "scene.toml", {"TOML", "PNG"});
+  const auto gone = board.outside("gone.toml"), wrong = board.outside("wrong.toml");
+  std::ofstream(wrong) << "[[surface]]\npicture = \"star\"\ntilt = 3\n";
+  check_refused(board.run_arguments({"--scene", gone.string()}), ErrorCode::not_found, gone.string(), {});
+  check_refused(board.run_arguments({"--scene", wrong.string()}), ErrorCode::not_found, wrong.string() + ":3",
+                {"tilt"});
 }
 
 TEST_CASE("an output that cannot be written is refused before the set-up") {

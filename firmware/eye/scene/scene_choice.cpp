@@ -1,0 +1,72 @@
+#include "firmware/eye/scene_choice.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "firmware/eye/scene/scene_file.hpp"
+#include "firmware/eye/scene/scene_pictures.hpp"
+#include "firmware/files/png.hpp"
+#include "hal/try.hpp"
+#include "sim/effects/effect.hpp"
+#include "sim/pictures/built_in_scenes.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+namespace fs = std::filesystem;
+
+hal::Result<sim::Scene> scene_from_picture(const hal::ObjectPlane& object, const fs::path& path) {
+  sim::Scene scene = sim::scene_on(object, path.stem().string(), TRY(read_png(path)));
+  fit(object, scene.surfaces.front());
+  return scene;
+}
+
+std::vector<std::string_view> effect_names() {
+  std::vector<std::string_view> names;
+  for (const sim::Effect* effect : sim::effects()) names.push_back(effect->name);
+  return names;
+}
+
+hal::Result<sim::Scene> built_in_scene(const hal::ObjectPlane& object, const std::string& name, std::uint64_t seed) {
+  return sim::scene_on(object, name, TRY(sim::render_built_in(name, object.rows, object.cols, seed)));
+}
+
+}  // namespace
+
+hal::Result<sim::Scene> choose_scene(const Board& board, const SceneChoice& choice) {
+  const bool from_board = choice.name.empty();
+  const std::string name = from_board ? board.scene.name : choice.name;
+  std::error_code ignored;
+  const fs::path path = from_board ? fs::path(board.folder) / name : fs::path(name);
+  if (extension_of(name) == ".toml") {
+    if (choice.seed != 0) {
+      return hal::fail(hal::ErrorCode::usage, "--scene-seed",
+                       "chooses among the drawings of a built-in scene; a scene file has a seed with each picture");
+    }
+    const std::vector<std::string_view> effects = effect_names();
+    return load_scene(path, {board.object, choice.distance_mm, effects});
+  }
+  const bool file = !is_built_in(name) && (looks_like_a_file(name) || fs::exists(path, ignored));
+  auto scene = file ? scene_from_picture(board.object, path) : built_in_scene(board.object, name, choice.seed);
+  if (!scene) {
+    if (from_board && !file) scene.error().place = board.place("scene", "default");
+    return scene;
+  }
+  scene->surfaces.front().distance_mm = choice.distance_mm;
+  return scene;
+}
+
+std::string built_in_scene_help() {
+  std::string text;
+  for (const sim::BuiltInScene& scene : sim::built_in_scenes()) {
+    std::string line = "  " + std::string(scene.name);
+    line.resize(std::max<std::size_t>(line.size() + 1, 15), ' ');
+    text += line + std::string(scene.description) + "\n";
+  }
+  return text;
+}
+
+}  // namespace compueye::firmware
