@@ -31,7 +31,7 @@ const Effect effect::display_refresh{
     },
     .bound =
         [](const Circumstances& c) {
-          return margin * std::min(c.preview.gradient_rms * step_mm(c), 2.0 * c.preview.rms);
+          return margin * std::min(steepness_lsb_per_mm(c) * step_mm(c), 2.0 * c.preview.rms);
         },
     .cost = [](const Circumstances&) { return EffectCost{}; },
     .apply =

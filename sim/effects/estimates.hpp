@@ -16,6 +16,10 @@ inline constexpr double margin = 1.25;
 [[nodiscard]] double speed_mm_per_s(const Surface& surface) noexcept;
 [[nodiscard]] double speed_mm_per_s(const Circumstances& c) noexcept;
 
+/// Change of the levels for a way in any direction, rms over the channels, LSB by mm: sqrt 2 of the preview's, whose
+/// two directions may both be as steep.
+[[nodiscard]] double steepness_lsb_per_mm(const Circumstances& c) noexcept;
+
 /// From an apex to the object plane, about.
 [[nodiscard]] double range_mm(const Circumstances& c) noexcept;
 

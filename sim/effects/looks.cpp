@@ -87,7 +87,7 @@ double shifted_change_lsb(const Circumstances& c, std::span<const double> turned
     grown2 += level * level * grown * grown / channels;
   }
   const double typical2 = weight > 0.0 ? way2 / weight : plain_way2;
-  const double change = c.preview.gradient_rms * std::sqrt(typical2) + std::sqrt(grown2);
+  const double change = steepness_lsb_per_mm(c) * std::sqrt(typical2) + std::sqrt(grown2);
   return margin * std::min(change, 2.0 * c.preview.rms);
 }
 

@@ -17,7 +17,7 @@ std::string calls_for(const Circumstances& c) {
 // brightest there is, about.
 double bound(const Circumstances& c) {
   const double way = speed_mm_per_s(c) * c.scene.seconds_to_judge();
-  const double along = margin * c.preview.gradient_rms * way;
+  const double along = margin * steepness_lsb_per_mm(c) * way;
   if (way < look_radius_mm(c) / 2.0) return along;
   const double other = std::max(2.0 * c.preview.rms, brightest(c) * white_lsb(c) / 2.0);
   return std::max(std::min(along, other), 2.0 * c.preview.rms);

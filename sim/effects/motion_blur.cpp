@@ -20,7 +20,7 @@ int instants(const Circumstances& c) noexcept {
 // it; where the way is long, less than the gradient's mean over w / 4.
 double bound(const Circumstances& c) {
   const double way = way_mm(c);
-  const double curved = way * way / 24.0 * c.preview.laplacian_rms, steep = way / 4.0 * c.preview.gradient_rms;
+  const double curved = way * way / 24.0 * c.preview.laplacian_rms, steep = way / 4.0 * steepness_lsb_per_mm(c);
   return 2.0 * margin * std::min({curved, steep, c.preview.rms});
 }
 

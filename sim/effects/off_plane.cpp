@@ -48,7 +48,7 @@ double bound(const Circumstances& c) {
   const double depth = deepest_mm(c), range = range_mm(c);
   const double corner = std::hypot(c.board.object.width_mm, c.board.object.height_mm) / 2.0;
   const double moved = corner * depth / std::max(range - depth, 0.1 * range);
-  const double along = margin * c.preview.gradient_rms * moved;
+  const double along = margin * steepness_lsb_per_mm(c) * moved;
   if (moved < corner / 2.0) return along;
   return std::max({along, c.preview.rms, brightest(c) * white_lsb(c) / 4.0});
 }

@@ -25,7 +25,7 @@ double strip_mm(const Circumstances& c) noexcept {
 double bound(const Circumstances& c) {
   const double strip = strip_mm(c);
   const double curved = strip * strip / 12.0 * c.preview.laplacian_rms;
-  return margin * std::min(curved, strip * c.preview.gradient_rms);
+  return margin * std::min(curved, strip * steepness_lsb_per_mm(c));
 }
 
 }  // namespace

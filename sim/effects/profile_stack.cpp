@@ -33,9 +33,9 @@ std::array<std::array<double, 2>, n> gauss_legendre() noexcept {
 }
 
 // A picture seen by f is the integral over heights 0 < f < 1 of what the flat cone out to a(f) sees. a runs off to
-// infinity at f = 0 and turns sharply at f = 1, so nodes crowd at both: f = s^2 (3 - 2 s).
+// infinity at f = 0 and turns sharply at f = 1, so nodes crowd at both: f = s^2 (3 - 2 s). Low orders have long tails.
+template <std::size_t shells>
 Stack soft(double order) {
-  constexpr std::size_t shells = 12;
   Stack stack;
   for (const auto& [s, weight] : gauss_legendre<shells>()) {
     const double height = s * s * (3.0 - 2.0 * s);
@@ -65,23 +65,33 @@ double zero_of_j1(int k) noexcept {
   return u;
 }
 
-// The central disc falls to 0 at the first zero: cones at Gauss' nodes over u, by the slope. Rings are even annuli of
-// their own light; from the fourth on, doubling numbers of them in one.
-Stack airy_stack(double widest_ratio) {
-  constexpr std::size_t inner = 10;
-  Stack stack;
-  const double first = zero_of_j1(1), widest = std::max(widest_ratio * airy_half, first);
-  for (const auto& [s, weight] : gauss_legendre<inner>()) {
-    stack.push_back({s * first / airy_half, -airy_slope(s * first) * first * weight});
+/// Cones at Gauss' nodes between two angles, by the slope.
+template <std::size_t nodes>
+void add_slope(double from, double to, Stack& stack) {
+  for (const auto& [s, weight] : gauss_legendre<nodes>()) {
+    const double u = from + (to - from) * s;
+    stack.push_back({u / airy_half, -airy_slope(u) * (to - from) * weight});
   }
-  double from = first;
-  for (int k = 2; from < widest; k = k < 5 ? k + 1 : 2 * k) {
+}
+
+// The central disc and the first three rings, between the zeros, by the slope. Farther rings are even annuli of their
+// own light, doubling numbers of them in one.
+Stack airy_stack(double widest_ratio) {
+  Stack stack;
+  add_slope<8>(0.0, zero_of_j1(1), stack);
+  add_slope<6>(zero_of_j1(1), zero_of_j1(2), stack);
+  add_slope<5>(zero_of_j1(2), zero_of_j1(3), stack);
+  add_slope<4>(zero_of_j1(3), zero_of_j1(4), stack);
+  const double widest = widest_ratio * airy_half;
+  double from = zero_of_j1(4), before = 0.0;
+  for (int k = 5; from < widest; k = k < 7 ? k + 1 : 2 * k) {
     const double to = std::min(zero_of_j1(k), widest);
     const double height = (airy_light(to) - airy_light(from)) / (to * to - from * from);
-    stack.push_back({to / airy_half, height});
-    stack.push_back({from / airy_half, -height});
+    stack.push_back({from / airy_half, before - height});
+    before = height;
     from = to;
   }
+  stack.push_back({from / airy_half, before});
   return stack;
 }
 
@@ -89,19 +99,26 @@ Stack airy_stack(double widest_ratio) {
 
 Stack profile_stack(hal::ProfileKind kind, double edge_order, double widest_ratio) {
   Stack stack{{1.0, 1.0}};
-  if (kind == hal::ProfileKind::soft) stack = soft(edge_order);
+  if (kind == hal::ProfileKind::soft) stack = edge_order < 1.8 ? soft<32>(edge_order) : soft<12>(edge_order);
   if (kind == hal::ProfileKind::airy) stack = airy_stack(widest_ratio);
   for (ProfileShell& shell : stack) shell.ratio = std::min(shell.ratio, widest_ratio);
   return stack;
 }
 
-ProfileMoments moments(const Stack& stack) noexcept {
-  ProfileMoments sums{0.0, 0.0};
+ProfileMoments moments(Stack stack) noexcept {
+  std::sort(stack.begin(), stack.end(), [](const auto& a, const auto& b) { return a.ratio < b.ratio; });
+  ProfileMoments sums{0.0, 0.0, 0.0};
+  double height = 0.0, inner = 0.0;
+  for (const ProfileShell& shell : stack) height += shell.weight;
   for (const ProfileShell& shell : stack) {
-    const double area = shell.weight * shell.ratio * shell.ratio;
-    sums.light += area;
-    sums.square += area * shell.ratio * shell.ratio / 2.0;
+    const double outer = shell.ratio * shell.ratio, within = std::clamp(1.0, inner, outer) - inner;
+    sums.light += shell.weight * outer;
+    sums.square += shell.weight * outer * outer / 2.0;
+    sums.apart += within * std::fabs(height - 1.0) + (outer - inner - within) * std::fabs(height);
+    height -= shell.weight;
+    inner = outer;
   }
+  sums.apart += std::max(1.0 - inner, 0.0);
   sums.square /= sums.light;
   return sums;
 }

@@ -16,11 +16,12 @@ struct ProfileShell {
 /// profile's integral to 0.2 % of white. A flat top is one cone.
 [[nodiscard]] std::vector<ProfileShell> profile_stack(hal::ProfileKind kind, double edge_order, double widest_ratio);
 
-/// Light of an even white field, relative to a flat top's, and mean square of the angle, relative to (D/2)^2.
+/// Of an even white field, relative to a flat top.
 struct ProfileMoments {
-  double light = 1.0;
-  double square = 0.5;
+  double light = 1.0;   ///< what it delivers
+  double square = 0.5;  ///< mean square of the angle, relative to (D/2)^2
+  double apart = 0.0;  ///< light that comes from elsewhere or is not there: integral of the difference's absolute value
 };
-[[nodiscard]] ProfileMoments moments(const std::vector<ProfileShell>& stack) noexcept;
+[[nodiscard]] ProfileMoments moments(std::vector<ProfileShell> stack) noexcept;
 
 }  // namespace compueye::sim

@@ -31,7 +31,7 @@ const Effect effect::sampling_skew{
     },
     .bound =
         [](const Circumstances& c) {
-          return margin * std::min(c.preview.gradient_rms * way_mm(c), 2.0 * c.preview.rms);
+          return margin * std::min(steepness_lsb_per_mm(c) * way_mm(c), 2.0 * c.preview.rms);
         },
     .cost =
         [](const Circumstances& c) {
