@@ -21,32 +21,45 @@ using Brightness = std::function<double(double, double)>;
   };
 }
 
-/// What the optics deliver of it, LSB: cells of 0.06 mm of the plane counted by whether the ray from the apex lies
+/// What the ray from an apex through the object plane at (right, up) meets.
+using Seen = std::function<double(const hal::Vec3& apex, double x, double y)>;
+
+/// What the optics deliver of it, LSB: cells of 0.1 mm of the plane counted by whether the ray from the apex lies
 /// within each cone. Shares nothing with the renderer.
-[[nodiscard]] inline std::vector<double> plane_levels(const sim::OpticsAsBuilt& optics, const EffectRig& rig,
-                                                      const Brightness& bright) {
-  constexpr double cell = 0.06, beside = 0.6;  // mm
+[[nodiscard]] inline std::vector<double> ray_levels(const sim::OpticsAsBuilt& optics, const EffectRig& rig,
+                                                    const Seen& seen) {
+  constexpr double cell = 0.1, beside = 0.6;  // mm
   const hal::ObjectPlane& object = rig.board.object;
   const double z = object.z_mm(rig.board.eye);
   const double unit = object.pixel_width_mm() * object.pixel_height_mm() * rig.board.sensor.lsb();
   std::vector<double> levels;
   for (const sim::OmmatidiumOptics& ommatidium : optics.ommatidia) {
+    std::vector<double> cosines;
+    for (const sim::ConeOfLight& cone : ommatidium.cones) cosines.push_back(std::cos(cone.half_angle_rad));
     double sum = 0.0;
     for (double y = cell / 2.0 - object.height_mm / 2.0 - beside; y < object.height_mm / 2.0 + beside; y += cell) {
       for (double x = cell / 2.0 - object.width_mm / 2.0 - beside; x < object.width_mm / 2.0 + beside; x += cell) {
         const hal::Vec3 ray{x - ommatidium.apex_mm.x, y - ommatidium.apex_mm.y, z - ommatidium.apex_mm.z};
         const double length = std::sqrt(ray.x * ray.x + ray.y * ray.y + ray.z * ray.z);
         double weight = 0.0;
-        for (const sim::ConeOfLight& cone : ommatidium.cones) {
-          const double cosine = (ray.x * cone.axis.x + ray.y * cone.axis.y + ray.z * cone.axis.z) / length;
-          if (cosine >= std::cos(cone.half_angle_rad)) weight += cone.weight;
+        for (std::size_t k = 0; k < cosines.size(); ++k) {
+          const hal::Vec3& axis = ommatidium.cones[k].axis;
+          if (ray.x * axis.x + ray.y * axis.y + ray.z * axis.z < cosines[k] * length) continue;
+          weight += ommatidium.cones[k].weight;
         }
-        if (weight != 0.0) sum += weight * std::pow(ray.z / length, optics.obliquity) * bright(x, y);
+        if (weight == 0.0) continue;
+        if (optics.obliquity != 0.0) weight *= std::pow(ray.z / length, optics.obliquity);
+        sum += weight * seen(ommatidium.apex_mm, x, y);
       }
     }
     levels.push_back(sum * cell * cell / unit);
   }
   return levels;
+}
+
+[[nodiscard]] inline std::vector<double> plane_levels(const sim::OpticsAsBuilt& optics, const EffectRig& rig,
+                                                      const Brightness& bright) {
+  return ray_levels(optics, rig, [&](const hal::Vec3&, double x, double y) { return bright(x, y); });
 }
 
 [[nodiscard]] inline double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -95,16 +108,22 @@ inline void look_at(EffectRig& rig, const Brightness& bright) {
   }
 }
 
-/// Pictures on which bounds are tried: noise of pixels, an edge, broad waves, a bright spot on grey.
-[[nodiscard]] inline std::vector<Brightness> tried_pictures(const hal::ObjectPlane& object) {
+/// 16x16 pixels of 0 to 1 that have nothing to do with each other.
+[[nodiscard]] inline hal::Image pixel_noise(std::size_t which = 0) {
   hal::Image noise(16, 16);
   for (std::size_t n = 0; n < noise.pixels.size(); ++n) {
-    noise.pixels[n] = static_cast<float>(static_cast<double>((n * 2654435761U >> 7U) % 1000U) / 1000.0);
+    noise.pixels[n] =
+        static_cast<float>(static_cast<double>(((n + 1000 * which) * 2654435761U >> 7U) % 1000U) / 1000.0);
   }
+  return noise;
+}
+
+/// Pictures on which bounds are tried: noise of pixels, an edge, broad waves, a bright spot on grey.
+[[nodiscard]] inline std::vector<Brightness> tried_pictures(const hal::ObjectPlane& object) {
   const auto inside = [object](double x, double y) {
     return std::fabs(x) < object.width_mm / 2.0 && std::fabs(y) < object.height_mm / 2.0;
   };
-  return {brightness_of(noise, object),
+  return {brightness_of(pixel_noise(), object),
           [inside](double x, double y) { return inside(x, y) && x + 0.3 * y > 0.7 ? 1.0 : 0.0; },
           [inside](double x, double y) { return inside(x, y) ? 0.5 + 0.4 * std::sin(1.5 * x + y) : 0.0; },
           [inside](double x, double y) {
