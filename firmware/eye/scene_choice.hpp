@@ -5,6 +5,7 @@
 #include <string>
 
 #include "firmware/eye/board.hpp"
+#include "hal/image.hpp"
 #include "hal/result.hpp"
 #include "sim/scene/scene.hpp"
 
@@ -23,6 +24,9 @@ struct SceneChoice {
 /// A scene file (.toml) says itself what it shows, whatever the seed. Errors: not_found (no such built-in scene, the
 /// nearest is named; no such file), and those of read_png(), render_built_in() and load_scene().
 [[nodiscard]] hal::Result<sim::Scene> choose_scene(const Board& board, const SceneChoice& choice);
+
+/// What a perfect reconstruction of the device's frame `frame` shows: sim::scene_truth() in the middle of its exposure.
+[[nodiscard]] hal::Result<hal::Image> truth_of_frame(const Board& board, const sim::Scene& scene, std::uint64_t frame);
 
 /// Every built-in scene with its description, a line each, for --help.
 [[nodiscard]] std::string built_in_scene_help();

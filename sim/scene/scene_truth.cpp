@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hal/try.hpp"
+#include "sim/scene/view_along_z.hpp"
 
 namespace compueye::sim {
 namespace {
@@ -33,12 +34,16 @@ std::vector<Overlap> overlaps(int sources, double source_size, int targets, doub
   return result;
 }
 
-}  // namespace
-
-hal::Result<hal::Image> scene_truth(const Scene& scene, const hal::ObjectPlane& object) {
-  TRY(validate(scene));
-  TRY(object.validate());
+/// One upright sheet in the middle, grey, whatever its distance.
+bool is_plain(const Scene& scene) noexcept {
+  if (scene.surfaces.size() != 1 || !scene.still()) return false;
   const Surface& sheet = scene.surfaces.front();
+  const Pose& pose = sheet.pose;
+  return sheet.shape == Shape::plane && sheet.bands.size() == 1 && pose.tilt_rad == 0.0 && pose.lean_rad == 0.0 &&
+         pose.roll_rad == 0.0 && pose.centre_mm.x == 0.0 && pose.centre_mm.y == 0.0;
+}
+
+hal::Image sheet_on(const Surface& sheet, const hal::ObjectPlane& object) {
   const hal::Image& picture = sheet.picture();
   if (picture.rows == object.rows && picture.cols == object.cols && sheet.width_mm == object.width_mm &&
       sheet.height_mm == object.height_mm) {
@@ -57,6 +62,16 @@ hal::Result<hal::Image> scene_truth(const Scene& scene, const hal::ObjectPlane& 
   hal::Image truth(object.rows, object.cols);
   std::transform(sums.begin(), sums.end(), truth.pixels.begin(), [](double sum) { return static_cast<float>(sum); });
   return truth;
+}
+
+}  // namespace
+
+hal::Result<hal::Image> scene_truth(const Scene& scene, const hal::ObjectPlane& object, double t_s) {
+  TRY(validate(scene));
+  TRY(object.validate());
+  const Scene seen = lit(scene);
+  if (is_plain(seen)) return sheet_on(seen.surfaces.front(), object);
+  return view_along_z(seen, object, t_s);
 }
 
 }  // namespace compueye::sim

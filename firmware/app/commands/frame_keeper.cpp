@@ -18,6 +18,7 @@ FrameKeeper::FrameKeeper(hal::FrameFormat format, std::uint64_t expected, std::s
   const std::uint64_t wanted = expected > 0 ? std::min(expected, usual_capacity) : usual_capacity;
   capacity_ = std::max(least_capacity, std::min(fit, static_cast<std::size_t>(wanted)));
   pictures_.resize(capacity_ * pixels_);
+  frames_.resize(capacity_);
   last_.resize(pixels_);
 }
 
@@ -37,12 +38,16 @@ void FrameKeeper::published(const PublishedFrame& published) noexcept {
   status_.published(published.frame.frame, published.age_ns, published.late);
   if (index % stride_ != 0) return;
   if (kept_ == capacity_) {
-    for (std::size_t i = 1; 2 * i < kept_; ++i) std::copy_n(picture(2 * i).begin(), pixels_, slot(i).begin());
+    for (std::size_t i = 1; 2 * i < kept_; ++i) {
+      std::copy_n(picture(2 * i).begin(), pixels_, slot(i).begin());
+      frames_[i] = frames_[2 * i];
+    }
     kept_ = (kept_ + 1) / 2;
     stride_ *= 2;
     if (index % stride_ != 0) return;
   }
   std::copy(pixels.begin(), pixels.end(), slot(kept_).begin());
+  frames_[kept_] = last_frame_;
   ++kept_;
 }
 

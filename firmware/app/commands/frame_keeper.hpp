@@ -29,6 +29,8 @@ class FrameKeeper final : public FrameObserver {
   /// Pictures kept, in order.
   [[nodiscard]] std::size_t kept() const noexcept { return kept_; }
   [[nodiscard]] std::span<const float> picture(std::size_t index) const noexcept;
+  /// Which frame of the device it is.
+  [[nodiscard]] std::uint64_t frame(std::size_t index) const noexcept { return frames_[index]; }
   /// The last one delivered, whether kept or not; meaningful when delivered() > 0.
   [[nodiscard]] std::span<const float> last() const noexcept { return last_; }
   [[nodiscard]] std::uint64_t last_frame() const noexcept { return last_frame_; }
@@ -50,6 +52,7 @@ class FrameKeeper final : public FrameObserver {
   std::size_t pixels_;
   std::size_t capacity_;
   std::vector<float> pictures_;
+  std::vector<std::uint64_t> frames_;
   std::vector<float> last_;
   std::size_t kept_ = 0;
   std::uint64_t stride_ = 1;

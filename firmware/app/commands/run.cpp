@@ -32,7 +32,6 @@
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "firmware/sinks/live_status.hpp"
 #include "hal/try.hpp"
-#include "sim/scene/scene_truth.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -105,6 +104,7 @@ class BoardRun {
   [[nodiscard]] bool knows_scene() const {
     return options_.knows_scene() && (board_.source.simulated() || !options_.scene.name.empty());
   }
+  [[nodiscard]] Result<hal::Image> truth_of(std::uint64_t frame) const;
   [[nodiscard]] std::uint64_t frames() const {
     return static_cast<std::uint64_t>(
         options_.frames.value_or(options_.replays() || !board_.source.simulated() ? 0 : board_.scene.frames_per_scene));
@@ -115,7 +115,7 @@ class BoardRun {
   Board board_;
   std::optional<PictureFolder> folder_;
   sim::Scene scene_;
-  hal::Image truth_;
+  hal::Image truth_, last_truth_;          // of frame 0 and of the last one
   std::optional<LivingResponse> living_;   // until lambda is chosen
   PointLadder ladder_;                     // its first eye is the board's, its rungs are empty without stored points
   std::vector<std::string> choice_notes_;  // said when the set-up no longer redraws its line
@@ -138,7 +138,7 @@ Result<void> BoardRun::prepare() {
   TRY(need(options_.sheet.empty() || knows_scene(), "--sheet",
            "needs --scene with an eye on a cable: it compares the picture with what the eye looks at"));
   scene_ = TRY(choose_scene(board_, options_.scene));
-  truth_ = TRY(sim::scene_truth(scene_, board_.object));
+  truth_ = TRY(truth_of_frame(board_, scene_, 0));
   report_.scene = knows_scene() ? scene_.name : "not known";
   report_.seed = options_.seed;
   report_.lossless = options_.waits_for_frames();
@@ -331,16 +331,23 @@ std::function<void()> BoardRun::how_far(TerminalSink* screen) {
   };
 }
 
+Result<hal::Image> BoardRun::truth_of(std::uint64_t frame) const {
+  if (scene_.still()) return truth_;
+  return truth_of_frame(board_, scene_, frame);
+}
+
 Result<void> BoardRun::measure_quality() {
   if (keeper_->kept() == 0) return {};
   const auto view = [&](std::span<const float> pixels) { return recon::PictureView(pixels, truth_.rows, truth_.cols); };
   std::vector<PictureQuality> pictures;
   for (std::size_t i = 0; i < keeper_->kept(); ++i) {
-    pictures.push_back(TRY(quality_of(view(keeper_->picture(i)), truth_)));
+    const hal::Image truth = TRY(truth_of(keeper_->frame(i)));
+    pictures.push_back(TRY(quality_of(view(keeper_->picture(i)), truth)));
   }
   report_.quality = summarise(pictures).mean;
   report_.measured = keeper_->kept();
-  report_.last_quality = TRY(quality_of(view(keeper_->last()), truth_));
+  last_truth_ = TRY(truth_of(keeper_->last_frame()));
+  report_.last_quality = TRY(quality_of(view(keeper_->last()), last_truth_));
   return {};
 }
 
@@ -363,7 +370,7 @@ Result<void> BoardRun::write_sheet() {
   hal::Image last(truth_.rows, truth_.cols);
   std::copy(keeper_->last().begin(), keeper_->last().end(), last.pixels.begin());
   report_.files.push_back(options_.sheet);
-  return write_run_sheet(options_.sheet, figures_of(report_, board_, eye()), truth_, conventional_, last);
+  return write_run_sheet(options_.sheet, figures_of(report_, board_, eye()), last_truth_, conventional_, last);
 }
 
 Result<void> BoardRun::print() {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -21,7 +20,6 @@
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
 #include "hal/try.hpp"
-#include "sim/scene/scene_truth.hpp"
 #include "sim/simulated_eye.hpp"
 
 namespace compueye::firmware {
@@ -130,9 +128,15 @@ Result<void> write(const Samples& samples, const Board& board, const SimulateReq
 
 Result<void> write_truth(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
   if (o.truth.empty()) return {};
-  const hal::Image truth = TRY(sim::scene_truth(scene, board.object));
-  const std::array<std::int64_t, 2> shape{truth.rows, truth.cols};
-  return write_npy(o.truth, shape, std::span<const float>(truth.pixels));
+  std::vector<std::int64_t> shape{board.object.rows, board.object.cols};
+  const std::int64_t frames = scene.still() ? 1 : o.frames;
+  if (frames > 1) shape.insert(shape.begin(), frames);
+  std::vector<float> pixels;
+  for (std::int64_t frame = 0; frame < frames; ++frame) {
+    const hal::Image truth = TRY(truth_of_frame(board, scene, static_cast<std::uint64_t>(frame)));
+    pixels.insert(pixels.end(), truth.pixels.begin(), truth.pixels.end());
+  }
+  return write_npy(o.truth, shape, std::span<const float>(pixels));
 }
 
 Figures report_of(const Board& board, const sim::Scene& scene, const Samples& samples, const SimulateRequest& o) {
@@ -185,7 +189,10 @@ Action declare(OptionList& options) {
   options.add("--scene-distance", o->scene.distance_mm, "of the scene alone, mm from the lens tip").where(length_mm());
   options.flag("--noise-free", o->noise_free, "exact signals: no read noise, no rounding (with --codes: rounded)");
   options.flag("--codes", o->codes, "raw codes instead of corrected samples");
-  options.add("--truth", o->truth, ".npy file for the scene on the object plane's pixels, (rows, columns)").output();
+  options
+      .add("--truth", o->truth,
+           ".npy file for the scene on the object plane's pixels, (rows, columns); of each frame if something moves")
+      .output();
   options.add("--weights", o->weights, ".npy file for weights shaped like the samples, 0 = tells nothing").output();
   options.flag("--explain", o->explain, "print which effects are on and off; works without --out too");
   options.json("print one object and nothing else on stdout");

@@ -1,6 +1,7 @@
 #include "firmware/eye/scene_choice.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "hal/try.hpp"
 #include "sim/effects/effect.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
+#include "sim/scene/scene_truth.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -57,6 +59,14 @@ hal::Result<sim::Scene> choose_scene(const Board& board, const SceneChoice& choi
   }
   scene->surfaces.front().distance_mm = choice.distance_mm;
   return scene;
+}
+
+hal::Result<hal::Image> truth_of_frame(const Board& board, const sim::Scene& scene, std::uint64_t frame) {
+  const double period_s = 1.0 / board.source.frame_rate_hz;
+  const double start_s = static_cast<double>(frame) * period_s;
+  const double exposure_s = board.detector.integration_ms > 0.0 ? board.detector.integration_ms * 1e-3 : period_s;
+  const double anew_s = scene.duration_s > 0.0 ? std::fmod(start_s, scene.duration_s) : start_s;
+  return sim::scene_truth(scene, board.object, anew_s + exposure_s / 2.0);
 }
 
 std::string built_in_scene_help() {

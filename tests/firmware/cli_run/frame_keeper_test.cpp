@@ -46,7 +46,10 @@ TEST_CASE("a run longer than the room leaves an even selection from its beginnin
     CHECK(values.size() <= 4);
     CHECK(values.front() == 0.0F);
     const float stride = values[1];
-    for (std::size_t i = 0; i < values.size(); ++i) CHECK(values[i] == stride * static_cast<float>(i));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      CHECK(values[i] == stride * static_cast<float>(i));
+      CHECK(keeper.frame(i) == 10 * (static_cast<std::uint64_t>(values[i]) + 1));
+    }
     CHECK(values.back() + stride >= static_cast<float>(count));
     CHECK(keeper.last().front() == static_cast<float>(count - 1));
   }

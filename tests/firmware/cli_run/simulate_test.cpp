@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/ready_eye.hpp"
@@ -46,6 +47,32 @@ TEST_CASE("simulated samples reconstruct to the scene they were made from") {
   REQUIRE(truths->values.size() == truth.pixels.size());
   std::copy(truths->values.begin(), truths->values.end(), truth.pixels.begin());
   CHECK(recon::nmse(picture, truth).value() < 1e-3);
+}
+
+TEST_CASE("the truth of a scene file is one picture when it is still, and one a frame when something moves") {
+  const CopiedBoard board;
+  const auto truth_file = board.outside("x.npy"), scene = board.outside("scene.toml");
+  const auto truths_of = [&](const std::string& motion) {
+    std::ofstream(scene) << "[[surface]]\npicture = \"white\"\nwidth_mm = 1\nx_mm = -3\n" << motion;
+    const auto samples = simulated(board, {"--scene", scene.string(), "--frames", "3", "--truth", truth_file.string()});
+    CHECK(samples.frames == 3);
+    return firmware::read_pictures(truth_file).value();
+  };
+  CHECK(truths_of("").values.size() == 16 * 16);
+  // 200 frames a second: 2.5, 7.5 and 12.5 ms after the beginning a bar of 1 mm is 0.5, 1.5 and 2.5 mm farther.
+  const auto moving = truths_of("velocity_mm_per_s = [200, 0, 0]\n[scene]\nduration_s = 1\n");
+  REQUIRE(moving.values.size() == 3 * 16 * 16);
+  const double pixel_mm = 8.0 / 16;
+  for (int frame = 0; frame < 3; ++frame) {
+    double light = 0.0, moment = 0.0;
+    for (int col = 0; col < 16; ++col) {
+      const double value = static_cast<double>(moving.values[static_cast<std::size_t>(frame * 256 + 7 * 16 + col)]);
+      light += value;
+      moment += value * ((col + 0.5) * pixel_mm - 4.0);
+    }
+    CHECK(light * pixel_mm == doctest::Approx(1.0));
+    CHECK(moment / light == doctest::Approx(-3.0 + 0.5 + frame).epsilon(1e-6));
+  }
 }
 
 TEST_CASE("frames, seeds, codes and the noise-free signal") {
