@@ -5,8 +5,8 @@
 #include <string>
 
 #include "hal/try.hpp"
-#include "sim/cone_section.hpp"
 #include "sim/picture_integral.hpp"
+#include "sim/render/cone_section.hpp"
 
 namespace compueye::sim {
 namespace {

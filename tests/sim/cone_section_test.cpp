@@ -1,4 +1,4 @@
-#include "sim/cone_section.hpp"
+#include "sim/render/cone_section.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/render/vec3.hpp"
+
+namespace compueye::sim {
+
+/// One condition on where light comes from, on the vector d from the apex to the point that shines. `margin(d)` is
+/// positive where it holds, and changes by no more than d does (mm), so that a margin larger than a piece's radius
+/// decides for all of the piece.
+struct HalfSpace {
+  hal::Vec3 normal;  ///< unit
+  double offset = 0.0;
+  [[nodiscard]] double margin(const hal::Vec3& d) const noexcept { return dot(normal, d) + offset; }
+};
+
+/// Within a half angle of an axis: the distance from the cone's mantle.
+struct WithinCone {
+  hal::Vec3 axis;  ///< unit
+  double sine = 0.0, cosine = 1.0;
+  [[nodiscard]] double margin(const hal::Vec3& d) const noexcept {
+    const double along = dot(axis, d);
+    return sine * along - cosine * std::sqrt(std::max(0.0, dot(d, d) - along * along));
+  }
+};
+
+/// What a rectangle hides: the pyramid from the apex through its edges, from its plane on.
+struct RectangleShadow {
+  std::array<HalfSpace, 5> sides;
+  [[nodiscard]] double margin(const hal::Vec3& d) const noexcept {
+    double least = sides[0].margin(d);
+    for (std::size_t k = 1; k < sides.size(); ++k) least = std::min(least, sides[k].margin(d));
+    return least;
+  }
+};
+
+/// What a ball hides: its inside, and the cone that touches it from where it touches on.
+struct BallShadow {
+  WithinCone cone;
+  HalfSpace beyond;
+  hal::Vec3 centre;
+  double radius = 0.0;
+  [[nodiscard]] double margin(const hal::Vec3& d) const noexcept {
+    return std::max(std::min(cone.margin(d), beyond.margin(d)), radius - length(d - centre));
+  }
+};
+
+struct Constraint {
+  enum class Kind { half_space, cone, rectangle, not_rectangle, ball, not_ball };
+  Kind kind = Kind::half_space;
+  union {
+    HalfSpace half_space;
+    WithinCone cone;
+    RectangleShadow rectangle;
+    BallShadow ball;
+  };
+
+  Constraint() noexcept : half_space{} {}
+  explicit Constraint(const HalfSpace& h) noexcept : half_space(h) {}
+  explicit Constraint(const WithinCone& c) noexcept : kind(Kind::cone), cone(c) {}
+  Constraint(const RectangleShadow& r, bool hidden) noexcept
+      : kind(hidden ? Kind::rectangle : Kind::not_rectangle), rectangle(r) {}
+  Constraint(const BallShadow& b, bool hidden) noexcept : kind(hidden ? Kind::ball : Kind::not_ball), ball(b) {}
+
+  [[nodiscard]] double margin(const hal::Vec3& d) const noexcept {
+    switch (kind) {
+      case Kind::half_space:
+        return half_space.margin(d);
+      case Kind::cone:
+        return cone.margin(d);
+      case Kind::rectangle:
+        return rectangle.margin(d);
+      case Kind::not_rectangle:
+        return -rectangle.margin(d);
+      case Kind::ball:
+        return ball.margin(d);
+      case Kind::not_ball:
+        return -ball.margin(d);
+    }
+    return 0.0;
+  }
+  /// Its edge has no corner.
+  [[nodiscard]] bool smooth() const noexcept { return kind == Kind::half_space || kind == Kind::cone; }
+  /// Its margin is linear in d.
+  [[nodiscard]] bool linear() const noexcept { return kind == Kind::half_space; }
+};
+
+}  // namespace compueye::sim

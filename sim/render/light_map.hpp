@@ -1,0 +1,132 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/render/placed_surface.hpp"
+
+namespace compueye::sim {
+
+/// A rectangle of a surface's picture: x to its right, y up, mm from its centre.
+struct Cell {
+  double x = 0.0, y = 0.0;  ///< its middle
+  double width = 0.0, height = 0.0;
+};
+
+/// How much a point of a surface counts for one ommatidium: the piece of the object plane that it covers as seen from
+/// the apex, times cos^obliquity of the ray's angle. With d from the apex to the point, Z the object plane's z -
+/// apex's, n dA the point's vector area away from the eye: Z^2 (n.d) / d_z^3 dA (d_z/|d|)^obliquity, in pixels of the
+/// object plane.
+struct RayWeight {
+  double scale = 1.0;  ///< Z^2 / area of an object pixel
+  double obliquity = 0.0;
+
+  [[nodiscard]] double operator()(const hal::Vec3& d, double facing) const noexcept {
+    if (!(d.z > 0.0) || !(facing > 0.0)) return 0.0;
+    const double inverse = 1.0 / d.z;
+    const double weight = scale * facing * inverse * inverse * inverse;
+    if (obliquity == 0.0) return weight;
+    return weight * std::pow(d.z * d.z / dot(d, d), 0.5 * obliquity);
+  }
+};
+
+class PlaneMap {
+ public:
+  static constexpr bool flat = true;  ///< what is linear in space is linear in the picture
+
+  PlaneMap(const PlacedSurface& surface, const hal::Vec3& apex, const RayWeight& weight)
+      : centre_(surface.centre - apex),
+        right_(surface.right),
+        up_(surface.up),
+        facing_(dot(centre_, surface.away)),
+        slope_(std::hypot(right_.z, up_.z)),
+        weight_(weight) {}
+
+  [[nodiscard]] bool seen() const noexcept { return facing_ > 0.0; }
+  [[nodiscard]] bool even() const noexcept { return slope_ == 0.0 && weight_.obliquity == 0.0; }
+  [[nodiscard]] hal::Vec3 at(double x, double y) const noexcept { return centre_ + x * right_ + y * up_; }
+  [[nodiscard]] double weight(double /*x*/, double /*y*/, const hal::Vec3& d) const noexcept {
+    return weight_(d, facing_);
+  }
+  /// About the largest weight in a small cell.
+  [[nodiscard]] double most_weight(const Cell& /*cell*/, const hal::Vec3& d) const noexcept {
+    return weight_(d, facing_);
+  }
+  /// No point of the cell is farther from its middle.
+  [[nodiscard]] double radius(const Cell& cell) const noexcept { return 0.5 * std::hypot(cell.width, cell.height); }
+  /// Over about this length the weight changes by a factor: the distance of its nearest singularity.
+  [[nodiscard]] double scale_mm(const Cell& /*cell*/, const hal::Vec3& d) const noexcept {
+    double scale = slope_ > 0.0 ? std::max(d.z, 0.0) / slope_ : std::numeric_limits<double>::infinity();
+    if (weight_.obliquity != 0.0) scale = std::min(scale, length(d) / (1.0 + 0.25 * std::fabs(weight_.obliquity)));
+    return scale;
+  }
+  /// How much of the cell there is at all: 1 all, 0 none, else some.
+  [[nodiscard]] double there(const Cell& /*cell*/) const noexcept { return 1.0; }
+
+ private:
+  hal::Vec3 centre_, right_, up_;
+  double facing_, slope_;
+  RayWeight weight_;
+};
+
+/// The front half of a ball, its picture a disc.
+class BallMap {
+ public:
+  static constexpr bool flat = false;
+
+  BallMap(const PlacedSurface& surface, const hal::Vec3& apex, const RayWeight& weight)
+      : centre_(surface.centre - apex),
+        right_(surface.right),
+        up_(surface.up),
+        away_(surface.away),
+        radius_(surface.radius()),
+        weight_(weight) {}
+
+  [[nodiscard]] bool seen() const noexcept { return dot(centre_, centre_) > radius_ * radius_; }
+  [[nodiscard]] bool even() const noexcept { return false; }
+  [[nodiscard]] hal::Vec3 at(double x, double y) const noexcept {
+    return centre_ + x * right_ + y * up_ - height(x * x + y * y) * away_;
+  }
+  [[nodiscard]] double weight(double x, double y, const hal::Vec3& d) const noexcept {
+    const double h = height(x * x + y * y);
+    if (!(h > 0.0)) return 0.0;
+    return weight_(d, dot(centre_ - d, d) / h);  // (centre - point) / h is the vector area of dx dy, from the eye
+  }
+  /// The cell's middle may be turned away, or beyond its rim, where the rest of the cell is not.
+  [[nodiscard]] double most_weight(const Cell& cell, const hal::Vec3& d) const noexcept {
+    const double size = std::hypot(cell.width, cell.height);
+    const double h = std::max(height(cell.x * cell.x + cell.y * cell.y), std::sqrt(radius_ * size));
+    const double turned = std::max(0.0, dot(centre_ - d, d)) / radius_ + length(d) * radius(cell) / radius_;
+    return weight_(d, turned * radius_ / h);
+  }
+  [[nodiscard]] double radius(const Cell& cell) const noexcept {
+    const double near = nearest(cell), far = farthest(cell), middle = std::hypot(cell.x, cell.y);
+    const double here = height(middle * middle);
+    const double rise = std::max(height(near * near) - here, here - height(far * far));
+    return std::hypot(0.5 * std::hypot(cell.width, cell.height), rise);
+  }
+  [[nodiscard]] double scale_mm(const Cell& cell, const hal::Vec3& d) const noexcept {
+    const double rim = radius_ - std::hypot(cell.x, cell.y);
+    return std::max(0.0, std::min({rim, 0.5 * std::max(d.z, 0.0), 0.5 * length(d)}));
+  }
+  [[nodiscard]] double there(const Cell& cell) const noexcept {
+    if (nearest(cell) >= radius_) return 0.0;
+    return farthest(cell) <= radius_ ? 1.0 : 0.5;
+  }
+
+ private:
+  [[nodiscard]] double height(double rho2) const noexcept { return std::sqrt(std::max(0.0, radius_ * radius_ - rho2)); }
+  [[nodiscard]] static double nearest(const Cell& c) noexcept {
+    return std::hypot(std::max(0.0, std::fabs(c.x) - 0.5 * c.width), std::max(0.0, std::fabs(c.y) - 0.5 * c.height));
+  }
+  [[nodiscard]] static double farthest(const Cell& c) noexcept {
+    return std::hypot(std::fabs(c.x) + 0.5 * c.width, std::fabs(c.y) + 0.5 * c.height);
+  }
+
+  hal::Vec3 centre_, right_, up_, away_;
+  double radius_;
+  RayWeight weight_;
+};
+
+}  // namespace compueye::sim

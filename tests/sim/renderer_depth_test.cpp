@@ -1,0 +1,165 @@
+// Surfaces at their true place: tilts, shadows and balls, against rays traced one by one (traced_rays.hpp), against a
+// tolerance a thousand times finer, and against closed forms.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "sim/random/random.hpp"
+#include "sim/render/renderer.hpp"
+#include "tests/sanitized.hpp"
+#include "tests/sim/traced_rays.hpp"
+
+using namespace compueye;
+using sim::OpticsAsBuilt;
+using sim::Renderer;
+using sim::RenderSettings;
+using sim::Scene;
+using sim::Shape;
+using sim::Surface;
+
+namespace {
+
+constexpr double deg = std::numbers::pi / 180.0;
+
+struct Eye {
+  hal::EyeGeometry eye;
+  hal::ObjectPlane object;
+};
+
+Eye eye_of(double acceptance_deg) {
+  Eye e;
+  e.eye.rows = e.eye.columns = 3;
+  e.eye.interommatidial_rad = 22.0 * deg;
+  e.eye.acceptance_rad = acceptance_deg * deg;
+  e.object = {160, 160, 60.0, 60.0, 10.0};
+  return e;
+}
+
+hal::Image random_picture(int rows, int cols, std::uint64_t seed) {
+  sim::RandomStream random({seed, sim::Draws::picture, 0, 7});
+  hal::Image picture(rows, cols);
+  for (float& pixel : picture.pixels) pixel = random.uniform(0, 1) < 0.5 ? 0.0F : 1.0F;
+  return picture;
+}
+
+Surface sheet(int pixels, double size_mm, double distance_mm, std::uint64_t seed) {
+  Surface surface;
+  surface.name = "sheet " + std::to_string(seed);
+  surface.bands = {random_picture(pixels, pixels, seed)};
+  surface.width_mm = surface.height_mm = size_mm;
+  surface.distance_mm = distance_mm;
+  return surface;
+}
+
+RenderSettings at_depth(bool occlusion, double tolerance = 3e-3) {
+  RenderSettings settings;
+  settings.true_depth = true;
+  settings.occlusion = occlusion;
+  settings.tolerance = tolerance;
+  return settings;
+}
+
+std::vector<double> rendered(const Eye& e, const Scene& scene, const RenderSettings& settings, double obliquity = 0.0) {
+  OpticsAsBuilt optics = OpticsAsBuilt::drawn(e.eye);
+  optics.obliquity = obliquity;
+  auto renderer = Renderer::create(e.eye, e.object, optics, settings, scene);
+  REQUIRE_MESSAGE(renderer.has_value(), (renderer ? "" : renderer.error().text()));
+  std::vector<double> signals(static_cast<std::size_t>(e.eye.ommatidia()));
+  renderer->render(0.0, signals);
+  return signals;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0.0;
+  for (std::size_t m = 0; m < a.size(); ++m) largest = std::max(largest, std::fabs(a[m] - b[m]));
+  return largest;
+}
+
+/// Largest difference from traced rays as a share of the brightest signal.
+double off_traced(const Eye& e, const Scene& scene, const std::vector<double>& signals, bool occlusion,
+                  double obliquity = 0.0) {
+  const OpticsAsBuilt optics = OpticsAsBuilt::drawn(e.eye);
+  const test::TracedRays rays(e.eye, e.object, scene, occlusion, test::sanitized ? 200 : 700);
+  double largest = 0.0;
+  for (std::size_t m = 0; m < signals.size(); ++m) {
+    largest = std::max(largest, std::fabs(signals[m] - rays.signal(optics.ommatidia[m], obliquity)));
+  }
+  return largest / *std::max_element(signals.begin(), signals.end());
+}
+
+constexpr double traced_share = test::sanitized ? 1e-2 : 2e-3;
+
+}  // namespace
+
+TEST_CASE("tilted, leant and rolled planes agree with traced rays, and with a thousandth of the tolerance") {
+  for (const double acceptance_deg : {4.0, 60.0}) {
+    for (const int pixels : {5, 200}) {
+      for (const double tilt_deg : {0.0, 30.0, 70.0}) {
+        CAPTURE(acceptance_deg);
+        CAPTURE(pixels);
+        CAPTURE(tilt_deg);
+        const Eye e = eye_of(acceptance_deg);
+        Scene scene;
+        scene.surfaces.push_back(sheet(pixels, 30.0, 20.0, 3));
+        scene.surfaces[0].pose.tilt_rad = tilt_deg * deg;
+        scene.surfaces[0].pose.lean_rad = -0.3 * tilt_deg * deg;
+        scene.surfaces[0].pose.roll_rad = 20.0 * deg;
+        scene.surfaces[0].pose.centre_mm = {2.0, -1.0, 0.0};
+        const std::vector<double> signals = rendered(e, scene, at_depth(false));
+        CHECK(off_traced(e, scene, signals, false) < traced_share);
+        if (test::sanitized) continue;
+        CHECK(largest_difference(signals, rendered(e, scene, at_depth(false, 3e-6))) < 3e-3);
+      }
+    }
+  }
+}
+TEST_CASE("what is nearer along a ray hides what is behind, also where planes cut through each other") {
+  const Eye e = eye_of(60.0);
+  Scene scene;
+  scene.surfaces.push_back(sheet(100, 60.0, 20.0, 1));
+  scene.surfaces.push_back(sheet(7, 9.0, 14.0, 2));
+  scene.surfaces.push_back(sheet(11, 12.0, 12.0, 3));
+  scene.surfaces[0].pose.tilt_rad = 15.0 * deg;
+  scene.surfaces[1].pose.centre_mm = {2.0, 1.0, 0.0};
+  scene.surfaces[1].pose.tilt_rad = 40.0 * deg;
+  scene.surfaces[2].pose.centre_mm = {3.0, -3.0, 0.0};
+  scene.surfaces[2].pose.tilt_rad = -40.0 * deg;
+  scene.surfaces[2].pose.roll_rad = 30.0 * deg;
+  const std::vector<double> signals = rendered(e, scene, at_depth(true));
+  CHECK(off_traced(e, scene, signals, true) < traced_share);
+  if (!test::sanitized) CHECK(largest_difference(signals, rendered(e, scene, at_depth(true, 3e-6))) < 3e-3);
+  const std::vector<double> added = rendered(e, scene, at_depth(false));
+  CHECK(off_traced(e, scene, added, false) < traced_share);
+  CHECK(largest_difference(signals, added) > 1.0);
+}
+
+TEST_CASE("balls agree with traced rays, hide and are hidden") {
+  const Eye e = eye_of(50.0);
+  Scene scene;
+  scene.surfaces.push_back(sheet(40, 60.0, 25.0, 1));
+  scene.surfaces.push_back(sheet(9, 9.0, 12.0, 2));
+  scene.surfaces[1].shape = Shape::sphere;
+  scene.surfaces[1].pose.centre_mm = {2.0, 1.0, 0.0};
+  scene.surfaces[1].pose.roll_rad = 20.0 * deg;
+  scene.surfaces.push_back(sheet(3, 4.0, 6.0, 5));
+  scene.surfaces[2].pose.centre_mm = {1.0, 2.0, 0.0};
+  const std::vector<double> signals = rendered(e, scene, at_depth(true));
+  CHECK(off_traced(e, scene, signals, true) < traced_share);
+  if (!test::sanitized) CHECK(largest_difference(signals, rendered(e, scene, at_depth(true, 3e-5))) < 3e-3);
+}
+
+TEST_CASE("rays count less by the power of the cosine of their angle") {
+  const Eye e = eye_of(60.0);
+  for (const double tilt_deg : {0.0, 40.0}) {
+    CAPTURE(tilt_deg);
+    Scene scene;
+    scene.surfaces.push_back(sheet(60, 40.0, 15.0, 4));
+    scene.surfaces[0].pose.tilt_rad = tilt_deg * deg;
+    const std::vector<double> signals = rendered(e, scene, at_depth(false), 3.0);
+    CHECK(off_traced(e, scene, signals, false, 3.0) < traced_share);
+    if (!test::sanitized) CHECK(largest_difference(signals, rendered(e, scene, at_depth(false, 3e-6), 3.0)) < 3e-3);
+  }
+}
