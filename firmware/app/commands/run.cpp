@@ -104,7 +104,6 @@ class BoardRun {
   [[nodiscard]] bool knows_scene() const {
     return options_.knows_scene() && (board_.source.simulated() || !options_.scene.name.empty());
   }
-  [[nodiscard]] Result<hal::Image> truth_of(std::uint64_t frame) const;
   [[nodiscard]] std::uint64_t frames() const {
     return static_cast<std::uint64_t>(
         options_.frames.value_or(options_.replays() || !board_.source.simulated() ? 0 : board_.scene.frames_per_scene));
@@ -115,7 +114,7 @@ class BoardRun {
   Board board_;
   std::optional<PictureFolder> folder_;
   sim::Scene scene_;
-  hal::Image truth_, last_truth_;          // of frame 0 and of the last one
+  hal::Image truth_;                       // of the first frame, and of the last one once all are measured
   std::optional<LivingResponse> living_;   // until lambda is chosen
   PointLadder ladder_;                     // its first eye is the board's, its rungs are empty without stored points
   std::vector<std::string> choice_notes_;  // said when the set-up no longer redraws its line
@@ -331,30 +330,23 @@ std::function<void()> BoardRun::how_far(TerminalSink* screen) {
   };
 }
 
-Result<hal::Image> BoardRun::truth_of(std::uint64_t frame) const {
-  if (scene_.still()) return truth_;
-  return truth_of_frame(board_, scene_, frame);
-}
-
 Result<void> BoardRun::measure_quality() {
-  if (keeper_->kept() == 0) return {};
-  const auto view = [&](std::span<const float> pixels) { return recon::PictureView(pixels, truth_.rows, truth_.cols); };
+  const auto quality = [&](std::span<const float> pixels, std::uint64_t frame) -> Result<PictureQuality> {
+    if (!scene_.still()) truth_ = TRY(truth_of_frame(board_, scene_, frame));
+    return quality_of(recon::PictureView(pixels, truth_.rows, truth_.cols), truth_);
+  };
   std::vector<PictureQuality> pictures;
   for (std::size_t i = 0; i < keeper_->kept(); ++i) {
-    const hal::Image truth = TRY(truth_of(keeper_->frame(i)));
-    pictures.push_back(TRY(quality_of(view(keeper_->picture(i)), truth)));
+    pictures.push_back(TRY(quality(keeper_->picture(i), keeper_->frame(i))));
   }
   report_.quality = summarise(pictures).mean;
   report_.measured = keeper_->kept();
-  last_truth_ = TRY(truth_of(keeper_->last_frame()));
-  report_.last_quality = TRY(quality_of(view(keeper_->last()), last_truth_));
+  report_.last_quality = TRY(quality(keeper_->last(), keeper_->last_frame()));
   return {};
 }
 
 Result<void> BoardRun::compare() {
-  if (!knows_scene()) return {};
-  TRY(measure_quality());
-  if (keeper_->delivered() == 0) return {};
+  if (!knows_scene() || keeper_->delivered() == 0) return {};
   auto conventional = conventional_picture(board_, scene_, options_.seed);
   if (!conventional) {
     note("the conventional eye is left out: " + conventional.error().text());
@@ -362,6 +354,7 @@ Result<void> BoardRun::compare() {
     conventional_ = std::move(*conventional);
     report_.conventional = TRY(quality_of(conventional_, truth_));
   }
+  TRY(measure_quality());
   return write_sheet();
 }
 
@@ -370,7 +363,7 @@ Result<void> BoardRun::write_sheet() {
   hal::Image last(truth_.rows, truth_.cols);
   std::copy(keeper_->last().begin(), keeper_->last().end(), last.pixels.begin());
   report_.files.push_back(options_.sheet);
-  return write_run_sheet(options_.sheet, figures_of(report_, board_, eye()), last_truth_, conventional_, last);
+  return write_run_sheet(options_.sheet, figures_of(report_, board_, eye()), truth_, conventional_, last);
 }
 
 Result<void> BoardRun::print() {
