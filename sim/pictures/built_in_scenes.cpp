@@ -36,20 +36,20 @@ constexpr std::array<Generator, 9> generators{{
      [](int rows, int cols, std::uint64_t seed) -> hal::Result<hal::Image> {
        return pictures::dots(rows, cols, seed);
      }},
-    {{"fig2", "a face of 19 pixels on 16x16, enlarged by whole factors; the same for every seed"},
+    {{"fig2", "a face of 19 pixels on 16x16, enlarged by whole factors; the same for every seed", false},
      [](int rows, int cols, std::uint64_t) { return pictures::fig2(rows, cols); }},
     {{"text", "an eye chart of six lines (seed 0: the same letters; others: drawn at random)"},
      [](int rows, int cols, std::uint64_t seed) -> hal::Result<hal::Image> {
        return pictures::text(rows, cols, seed);
      }},
-    {{"star", "a Siemens star of 36 spokes; the same for every seed"},
+    {{"star", "a Siemens star of 36 spokes; the same for every seed", false},
      [](int rows, int cols, std::uint64_t) -> hal::Result<hal::Image> { return pictures::siemens_star(rows, cols); }},
     {{"slanted-edge",
-      "dark and light along an edge 5 degrees off upright, as in ISO 12233 (odd seeds: light on the left)"},
+      "dark and light along an edge 5 degrees off upright, as in ISO 12233 (odd seeds: light on the left)", false},
      [](int rows, int cols, std::uint64_t seed) -> hal::Result<hal::Image> {
        return pictures::slanted_edge(rows, cols, seed);
      }},
-    {{"white", "white all over"},
+    {{"white", "white all over", false},
      [](int rows, int cols, std::uint64_t) -> hal::Result<hal::Image> { return hal::Image(rows, cols, 1.0F); }},
 }};
 

@@ -12,6 +12,7 @@ namespace compueye::sim {
 struct BuiltInScene {
   std::string_view name;
   std::string_view description;  ///< one line for --help
+  bool varies = true;            ///< every seed is another picture
 };
 
 /// Every picture that needs no file, in the order to list them.

@@ -23,16 +23,17 @@ using hal::ErrorCode;
 using hal::Result;
 
 Result<void> check_name(const std::string& name) {
-  if (name == "fig2") {
+  std::vector<std::string_view> varied;
+  for (const sim::BuiltInScene& scene : sim::built_in_scenes()) {
+    if (scene.varies) varied.push_back(scene.name);
+    if (scene.name != name || scene.varies) continue;
     return hal::fail(ErrorCode::usage, "--scenes",
-                     "has fig2, which is one and the same drawing for every seed; dots are like it");
+                     fmt::format("has {}, of which not every seed is another drawing; dots are like fig2", name));
   }
-  const auto known = sim::built_in_scenes();
-  if (std::any_of(known.begin(), known.end(), [&](const auto& scene) { return scene.name == name; })) return {};
+  if (std::find(varied.begin(), varied.end(), name) != varied.end()) return {};
   return hal::fail(ErrorCode::usage, "--scenes",
-                   fmt::format("has '{}', expected built-in scenes, which draw another picture for every seed: "
-                               "line-art, phantom, bars, dots",
-                               name));
+                   fmt::format("has '{}', expected built-in scenes, which draw another picture for every seed: {}",
+                               name, fmt::join(varied, ", ")));
 }
 
 Result<EvaluationScene> drawn(const Board& board, const sim::Optics& optics, const std::string& name,

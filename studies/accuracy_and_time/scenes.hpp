@@ -44,7 +44,8 @@ using FrameSequence = std::vector<EvaluationFrame>;
 [[nodiscard]] std::vector<std::string> usual_scenes(const Board& board);
 
 /// Twelve scenes, the names in turn, each with a seed of its own, and with `moving` the frames before them. Errors:
-/// usage for a scene that is no built-in one or has but one drawing (fig2); those of the optics; interrupted.
+/// usage for a scene that is no built-in one or has not a drawing for every seed (fig2); those of the optics;
+/// interrupted.
 [[nodiscard]] hal::Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board,
                                                                                const std::vector<std::string>& names,
                                                                                bool moving,

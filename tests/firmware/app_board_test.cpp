@@ -183,6 +183,8 @@ TEST_CASE("the boards that come with the project load and are what they say") {
   };
   for (const Case& c :
        {Case{"sim-8x8", 8, 1.5, 8.0, 128.0 / 65536.0 * std::sqrt(13.0 / 12.0)},
+        Case{"sim-8x8-built", 8, 1.5, 8.0, 128.0 / 65536.0 * std::sqrt(13.0 / 12.0)},
+        Case{"sim-8x8-detector", 8, 1.5, 8.0, 128.0 / 65536.0 * std::sqrt(13.0 / 12.0)},
         Case{"sim-80x80", 80, 2.25, 60.0, std::sqrt(0.1)}, Case{"sim-120x120", 120, 1.5, 60.0, std::sqrt(0.1)}}) {
     CAPTURE(c.name);
     const auto board = load_board(boards / c.name);

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "firmware/eye/board.hpp"
+#include "firmware/eye/scene_choice.hpp"
 #include "firmware/files/png.hpp"
 #include "tests/firmware/app_board_text.hpp"
 #include "tests/firmware/app_scene_text.hpp"
@@ -108,6 +110,17 @@ TEST_CASE("keys of a scene that contradict each other or would be ignored are re
       {"tilt_deg = 30", "shines = true", 3, {"[light]"}, ErrorCode::mismatch},
       {"picture = \"white\"", "name = \"card\"\npicture = \"white\"", 18, {"card"}, ErrorCode::mismatch},
   });
+}
+
+TEST_CASE("what is a part of an effect cannot be on without it, of the effects that there are") {
+  const compueye::test::TemporaryFolder folder;
+  const Board board = parse_board(firmware::test::good_board, "board.toml").value();
+  const std::string file = (folder / "scene.toml").string();
+  for (const std::string part : {"motion_blur", "sampling_skew", "display_refresh"}) {
+    std::ofstream(file) << "[[surface]]\npicture = \"star\"\n[effects]\nmotion = \"off\"\n" << part << " = \"on\"\n";
+    compueye::test::check_error(choose_scene(board, {file, 0, std::nullopt}), ErrorCode::mismatch, file + ":5",
+                                {part, "motion"});
+  }
 }
 
 TEST_CASE("what is or comes inside the eye, or leaves numbers, is told with the time and the line that moves it") {

@@ -63,16 +63,19 @@ Figures settings_figures(const Board& board, std::string_view section) {
   return figures;
 }
 
-/// "seed 1, pose_rms_deg 0.3", or "as drawn": what differs from the drawing.
+/// "pose_rms_deg 0.3, seed 1", or "as drawn": what differs from the drawing.
 std::string as_built_text(const Board& board) {
   std::string text;
+  bool built = false;
   for (const Setting& setting : settings()) {
-    if (!setting.as_built) continue;
+    if (!setting.as_built || setting.key == "seed") continue;
     const std::optional<SettingValue> shown = setting.show(board);
     if (!shown || shown == setting.fallback) continue;
-    text += fmt::format(", {} {}", setting.key, quoted(*shown));
+    built = built || setting.section == "build";
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", setting.key, quoted(*shown));
   }
-  return text.empty() ? "as drawn" : fmt::format("seed {}", board.build.seed) + text;
+  if (built) text += fmt::format(", seed {}", board.build.seed);
+  return text.empty() ? "as drawn" : text;
 }
 
 void add_eye(const Board& board, Figures& figures) {

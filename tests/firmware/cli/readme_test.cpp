@@ -80,6 +80,7 @@ NotRun marked(std::string_view line) {
 TEST_CASE("every command of the README does what it says, in the order in which it stands there") {
 #if defined(NDEBUG) && !defined(COMPUEYE_NO_MULTIVERSION)
   const TemporaryFolder folder;
+  std::filesystem::copy(source_path("scenes"), folder / "scenes");
   std::filesystem::create_directory(folder / "boards");
   for (const auto& board : std::filesystem::directory_iterator(source_path("boards"))) {
     // Without what was kept there by others.
