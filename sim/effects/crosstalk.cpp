@@ -51,7 +51,7 @@ const Effect effect::crosstalk{
       return share > 0.0 ? "neighbours share " + figure(100.0 * share) + " % of a signal" : "";
     },
     .bound = [](const Circumstances& c) { return margin * c.board.build.crosstalk * c.preview.neighbour_rms; },
-    .cost = [](const Circumstances& c) { return step_cost(c, 3.0); },
+    .cost = [](const Circumstances& c) { return step_cost(c, 6.0); },
     .apply =
         [](const Circumstances& c, Workings& w) {
           w.steps.push_back(std::make_unique<Step>(c.board.eye.rows, c.board.eye.columns, c.board.build.crosstalk));

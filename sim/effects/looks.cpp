@@ -26,21 +26,28 @@ Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
 /// How an ommatidium looks at the object plane.
 struct Look {
   double height_mm = 0.0;  ///< of the apex over it
-  double cosine = 1.0;     ///< of its axis to z, kept from grazing
+  double cosine = 1.0;     ///< of its axis to z
 };
 
 Look look_of(const Circumstances& c, std::size_t m) noexcept {
   const hal::EyeGeometry& eye = c.board.eye;
   const int i = static_cast<int>(m) / eye.columns, k = static_cast<int>(m) % eye.columns;
-  const double height = c.board.object.z_mm(eye) - eye.apex(i, k).z;
-  return {std::max(height, 1e-9), std::max(eye.axis(i, k).z, 0.1)};
+  const Vec3 apex = eye.apex(i, k);
+  const double height = std::max(c.board.object.z_mm(eye) - apex.z, 1e-9);
+  // Of an ommatidium that looks beside the object plane, the ray that meets its farthest corner.
+  const double corner = std::hypot(c.board.object.width_mm, c.board.object.height_mm) / 2.0;
+  const double farthest = (corner + std::hypot(apex.x, apex.y)) / height;
+  return {height, std::max(eye.axis(i, k).z, 1.0 / std::sqrt(1.0 + farthest * farthest))};
 }
+
+/// Where a cone meets the plane in a long ellipse or none, its far end is beyond what there is to see.
+constexpr double least_q = 0.15;
 
 /// The ellipse in which a cone meets the plane, for heights of 1. Semi-axes sin h cos h / q and sin h / sqrt q with
 /// q = cos^2 t - sin^2 h.
 double ellipse(double cosine, double half_rad) noexcept {
   const double s = std::sin(half_rad);
-  return s * s * std::cos(half_rad) / std::pow(std::max(cosine * cosine - s * s, 0.01), 1.5);
+  return s * s * std::cos(half_rad) / std::pow(std::max(cosine * cosine - s * s, least_q), 1.5);
 }
 
 }  // namespace
@@ -64,7 +71,7 @@ LookAt look_at(const Circumstances& c, int m) noexcept {
   const Look look = look_of(c, static_cast<std::size_t>(m));
   const Vec3 apex = eye.apex(m / eye.columns, m % eye.columns), axis = eye.axis(m / eye.columns, m % eye.columns);
   const double half = eye.acceptance_rad / 2.0, s = std::sin(half);
-  const double q = std::max(look.cosine * look.cosine - s * s, 0.01);
+  const double q = std::max(look.cosine * look.cosine - s * s, least_q);
   const double range = look.height_mm / look.cosine;
   return {apex.x + range * axis.x, apex.y + range * axis.y, look.height_mm * s * std::cos(half) / q,
           std::numbers::pi * look.height_mm * look.height_mm * ellipse(look.cosine, half)};

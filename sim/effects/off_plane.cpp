@@ -43,14 +43,15 @@ std::string calls_for(const Circumstances& c) {
 // A ray that meets the object plane at p, seen from its apex at a (across z), at range r, meets a surface dL behind it
 // at p + (p - a) dL / r: every look is moved by at most corner dL / r, and a level changes by at most its gradient
 // times that (rms over channels: the preview's); nearer by dL, the same over r - dL. What is moved farther than a
-// quarter of the plane shows something that the flat look does not: at most a look full of the brightest.
+// quarter of the plane shows something that the flat look does not: about as bright as the levels are, or a good part
+// of a look full of the brightest.
 double bound(const Circumstances& c) {
   const double depth = deepest_mm(c), range = range_mm(c);
   const double corner = std::hypot(c.board.object.width_mm, c.board.object.height_mm) / 2.0;
   const double moved = corner * depth / std::max(range - depth, 0.1 * range);
   const double along = margin * steepness_lsb_per_mm(c) * moved;
   if (moved < corner / 2.0) return along;
-  return std::max({along, c.preview.rms, brightest(c) * white_lsb(c) / 4.0});
+  return std::max(std::min(along, 3.0 * c.preview.rms), brightest(c) * white_lsb(c) / 4.0);
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ double change_at(const Surface& surface, const hal::Image& change, double x_mm, 
   return static_cast<double>(change.at(static_cast<int>(row), static_cast<int>(col)));
 }
 
-/// Mean over a look's places, evenly spread.
-double mean_change(const LookAt& look, const Surface& surface, const hal::Image& change) noexcept {
+/// Integral over a look narrower than the surface, by places evenly spread over it.
+double narrow_change_mm2(const LookAt& look, const Surface& surface, const hal::Image& change) noexcept {
   constexpr int rings = 6, spokes = 16;
   double sum = 0.0;
   for (int ring = 0; ring < rings; ++ring) {
@@ -36,24 +36,50 @@ double mean_change(const LookAt& look, const Surface& surface, const hal::Image&
       sum += change_at(surface, change, look.x_mm + radius * std::cos(angle), look.y_mm + radius * std::sin(angle));
     }
   }
-  return sum / (rings * spokes);
+  return look.area_mm2 * sum / (rings * spokes);
+}
+
+/// The same of any look, by places evenly spread over the surface.
+double wide_change_mm2(const Circumstances& c, int m, const Surface& surface, const hal::Image& change) noexcept {
+  constexpr int side = 24;
+  const hal::EyeGeometry& eye = c.board.eye;
+  const hal::Vec3 apex = eye.apex(m / eye.columns, m % eye.columns), axis = eye.axis(m / eye.columns, m % eye.columns);
+  const double z = c.board.object.z_mm(eye) - apex.z, cosine = std::cos(eye.acceptance_rad / 2.0);
+  double sum = 0.0;
+  for (int i = 0; i < side; ++i) {
+    for (int k = 0; k < side; ++k) {
+      const double x = surface.pose.centre_mm.x + ((k + 0.5) / side - 0.5) * surface.width_mm;
+      const double y = surface.pose.centre_mm.y + ((i + 0.5) / side - 0.5) * surface.height_mm;
+      const double right = x - apex.x, up = y - apex.y;
+      const double along = right * axis.x + up * axis.y + z * axis.z;
+      if (along >= cosine * std::sqrt(right * right + up * up + z * z)) sum += change_at(surface, change, x, y);
+    }
+  }
+  return surface.width_mm * surface.height_mm * sum / (side * side);
+}
+
+double change_mm2(const Circumstances& c, int m, const Surface& surface, const hal::Image& change) noexcept {
+  const LookAt look = look_at(c, m);
+  return look.radius_mm < std::min(surface.width_mm, surface.height_mm) / 3.0 ? narrow_change_mm2(look, surface, change)
+                                                                              : wide_change_mm2(c, m, surface, change);
 }
 
 }  // namespace
 
 double picture_change_lsb(const Circumstances& c, const Surface& surface, const hal::Image& change) {
   const double unit = c.board.object.pixel_width_mm() * c.board.object.pixel_height_mm() * c.board.sensor.lsb();
-  const double side = surface.width_mm * surface.height_mm;
-  double mean_square = 0.0, squares = 0.0;
+  hal::Image ones(1, 1);
+  ones.pixels = {1.0F};
+  double mean_square = 0.0, squares = 0.0, areas = 0.0, looks = 0.0;
   for (const float each : change.pixels) mean_square += static_cast<double>(each) * static_cast<double>(each);
   mean_square /= static_cast<double>(change.pixels.size());
-  const bool fixed = stays(c, surface);
   for (int m = 0; m < c.board.eye.ommatidia(); ++m) {
-    const LookAt look = look_at(c, m);
-    const double square = fixed ? std::pow(mean_change(look, surface, change), 2) : mean_square;
-    squares += std::pow((fixed ? look.area_mm2 : std::min(look.area_mm2, side)) / unit, 2) * square;
+    squares += std::pow(change_mm2(c, m, surface, change), 2);
+    areas += std::pow(change_mm2(c, m, surface, ones), 2);
+    looks += std::pow(std::min(look_at(c, m).area_mm2, surface.width_mm * surface.height_mm), 2);
   }
-  return margin * std::sqrt(squares / c.board.eye.ommatidia());
+  if (!stays(c, surface)) squares = (areas > 0.0 ? areas : looks) * mean_square;
+  return margin / unit * std::sqrt(squares / c.board.eye.ommatidia());
 }
 
 }  // namespace compueye::sim

@@ -21,10 +21,11 @@ double strip_mm(const Circumstances& c) noexcept {
 
 // A picture blurred over a strip b is the mean of pictures moved by up to b / 2 either way: to second order a level
 // changes by half the variance b^2 / 12 times its second derivative, for both directions together at most twice that of
-// the larger. Where a strip is no longer narrow, by less than the gradient's b / 2.
+// the larger. At the picture's border, which has no neighbour to run into, up to three times that (seen of a white
+// sheet). Where a strip is no longer narrow, by less than the gradient's b / 2.
 double bound(const Circumstances& c) {
   const double strip = strip_mm(c);
-  const double curved = strip * strip / 12.0 * c.preview.laplacian_rms;
+  const double curved = 3.0 * strip * strip / 12.0 * c.preview.laplacian_rms;
   return margin * std::min(curved, strip * steepness_lsb_per_mm(c));
 }
 

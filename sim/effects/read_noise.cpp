@@ -31,7 +31,7 @@ const Effect effect::read_noise{
       return rms > 0.0 ? "the converter reads " + figure(rms) + " LSB of noise" : "";
     },
     .bound = [](const Circumstances& c) { return c.board.sensor.read_noise_lsb; },
-    .cost = [](const Circumstances& c) { return step_cost(c, 40.0); },
+    .cost = [](const Circumstances& c) { return step_cost(c, 60.0); },
     .apply = apply,
 };
 

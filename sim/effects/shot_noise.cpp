@@ -48,7 +48,7 @@ const Effect effect::shot_noise{
     .error = ErrorKind::white,
     .calls_for = calls_for,
     .bound = bound,
-    .cost = [](const Circumstances& c) { return step_cost(c, 60.0); },
+    .cost = [](const Circumstances& c) { return step_cost(c, 80.0); },
     .apply = apply,
 };
 

@@ -24,12 +24,12 @@ using Brightness = std::function<double(double, double)>;
 /// What the ray from an apex through the object plane at (right, up) meets.
 using Seen = std::function<double(const hal::Vec3& apex, double x, double y)>;
 
-/// What the optics deliver of it, LSB: cells of 0.1 mm of the plane counted by whether the ray from the apex lies
+/// What the optics deliver of it, LSB: cells of an 80th of the plane counted by whether the ray from the apex lies
 /// within each cone. Shares nothing with the renderer.
 [[nodiscard]] inline std::vector<double> ray_levels(const sim::OpticsAsBuilt& optics, const EffectRig& rig,
                                                     const Seen& seen) {
-  constexpr double cell = 0.1, beside = 0.6;  // mm
   const hal::ObjectPlane& object = rig.board.object;
+  const double cell = object.width_mm / 80.0, beside = 6.0 * cell;  // mm
   const double z = object.z_mm(rig.board.eye);
   const double unit = object.pixel_width_mm() * object.pixel_height_mm() * rig.board.sensor.lsb();
   std::vector<double> levels;
@@ -93,7 +93,7 @@ inline void look_at(EffectRig& rig, const Brightness& bright) {
     squares += std::pow(still[m] - sum / count, 2);
   }
   rig.preview.neighbour_rms = std::sqrt(squares / static_cast<double>(still.size()));
-  constexpr double step = 0.5;
+  const double step = rig.board.object.width_mm / 16.0;
   for (const bool up : {false, true}) {
     const std::vector<double> after = moved(up ? 0.0 : step, up ? step : 0.0);
     const std::vector<double> before = moved(up ? 0.0 : -step, up ? -step : 0.0);
