@@ -127,6 +127,28 @@ TEST_CASE("a lamp's noise that would double K is taken off what is the channels'
   CHECK_FALSE(single.median.read_noise_e.has_value());
 }
 
+TEST_CASE("four channels keep three quarters of their noise, and get it back") {
+  Bench bench(20.0);
+  bench.rig.board.sensor.read_noise_lsb = 1.0;
+  (void)bench.measured(3900.0, 12);
+  double sum = 0.0;
+  constexpr std::size_t groups = 64;
+  for (std::size_t group = 0; group < groups; ++group) {
+    std::vector<LightSeries> four = bench.series;
+    for (LightSeries& each : four) {
+      std::vector<std::int32_t> own;
+      for (std::size_t n = 0; n < each.codes.size(); ++n) {
+        if (n % 1024 / 4 == group) own.push_back(each.codes[n]);
+      }
+      each.codes = own;
+    }
+    const SensorNoise told = sensor_noise(four, 4, 12).value();
+    for (const auto& channel : told.channels) sum += channel.gain_lsb_per_e.value_or(0.0) / (4.0 * groups);
+  }
+  // Not divided by 1 - 1/4 it would be 25 % too small.
+  CHECK(sum == doctest::Approx(0.05).epsilon(0.03 * slack));
+}
+
 TEST_CASE("a converter's bow is the linearity error that the noise-free curve has") {
   Bench bench(20.0);
   bench.rig.board.detector.inl_lsb = 40.0;

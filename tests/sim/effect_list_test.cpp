@@ -24,8 +24,8 @@ TEST_CASE("every effect has its parts, a name of its own and draws of its own, i
     CHECK(static_cast<bool>(effect->cost));
     CHECK(static_cast<bool>(effect->apply));
     CHECK(names.insert(std::string(effect->name)).second);
-    const auto [at, is_new] = drawn_by.insert({draws_of(effect->name), std::string(effect->name)});
-    CHECK_MESSAGE(is_new, "draws as " << at->second << " does");
+    const auto drawn = drawn_by.insert({draws_of(effect->name), std::string(effect->name)});
+    CHECK_MESSAGE(drawn.second, "draws as " << drawn.first->second << " does");
     CHECK(before <= effect->group);
     before = effect->group;
     CHECK(effect_named(effect->name).value() == effect);
