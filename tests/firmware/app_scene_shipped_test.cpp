@@ -5,10 +5,13 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/scene_choice.hpp"
+#include "sim/simulation.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/source_folder.hpp"
 
@@ -69,5 +72,51 @@ TEST_CASE("every scene says in a line what it calls for, and the list of them kn
     CHECK((text.starts_with("# Calls for ") || text.starts_with("# Forces ")));
     CHECK(text.find("description = ") != std::string::npos);
     CHECK(list.find("| `" + file.filename().string() + "` |") != std::string::npos);
+  }
+}
+
+TEST_CASE("the scenes call for what their list says, and the still ones for nothing of scene and time") {
+  struct Case {
+    const char* board;
+    const char* scene;
+    std::vector<std::string_view> effects;
+  };
+  const std::vector<std::string_view> none;
+  const std::vector<Case> cases{
+      {"sim-8x8", "star", none},
+      {"sim-8x8", "text", none},
+      {"sim-8x8", "slanted-edge", none},
+      {"sim-8x8-detector", "moving-bar", {"motion", "motion_blur", "sampling_skew"}},
+      {"sim-8x8", "turntable", {"motion", "motion_blur"}},
+      {"sim-8x8", "tilted", {"off_plane"}},
+      {"sim-8x8", "approach", {"off_plane", "motion", "motion_blur"}},
+      {"sim-8x8", "behind-a-bar", {"off_plane", "occlusion", "motion", "motion_blur"}},
+      {"sim-8x8", "two-depths", {"off_plane", "occlusion"}},
+      {"sim-8x8", "ball", {"off_plane"}},
+      {"sim-8x8", "relief", {"off_plane"}},
+      {"sim-8x8-detector", "mains", {"mains_flicker"}},
+      {"sim-8x8", "lamp-drift", {"light_falloff", "lamp_drift"}},
+      {"sim-8x8", "colours", {"spectral_response"}},
+      {"sim-8x8", "display", {"motion", "motion_blur", "display_response", "pixel_blur", "display_refresh"}},
+  };
+  for (const Case& c : cases) {
+    CAPTURE(c.scene);
+    const Board board = load_board(compueye::test::source_path(std::string("boards/") + c.board)).value();
+    const std::string file = compueye::test::source_path(std::string("scenes/") + c.scene + ".toml");
+    sim::Scene scene = choose_scene(board, {file, 0, std::nullopt}).value();
+    const auto simulation = sim::Simulation::create(
+        {board.eye, board.object, board.build, board.sensor, board.detector, board.source.frame_rate_hz},
+        std::move(scene), 1, sim::Sensitivity::of_small_eye());
+    REQUIRE_MESSAGE(simulation.has_value(), simulation.error().text());
+    std::vector<std::string_view> called;
+    for (const sim::PlannedEffect& each : simulation->plan().effects) {
+      const bool of_scene =
+          each.effect->group == sim::EffectGroup::scene || each.effect->group == sim::EffectGroup::timing;
+      if (of_scene && !each.called_for_by.empty()) called.push_back(each.effect->name);
+    }
+    std::vector<std::string_view> listed = c.effects;
+    std::sort(called.begin(), called.end());
+    std::sort(listed.begin(), listed.end());
+    CHECK(called == listed);
   }
 }
