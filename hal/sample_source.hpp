@@ -20,6 +20,7 @@ struct SourceDescription {
   int bits = 0;          ///< depth of the codes
   double frame_rate_hz = 0.0;
   std::vector<std::int32_t> ommatidium_of_channel;  ///< M entries: channel -> ommatidium (row of A)
+  std::string provenance = {};  ///< lines "key = value" on how samples come about that no photodiode made; else empty
 };
 
 /// A stream of frames of samples: an eye on a bus, a simulated eye or a recording.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hal/try.hpp"
+#include "sim/effects/effect.hpp"
 
 namespace compueye::sim {
 namespace {
@@ -30,55 +31,62 @@ Result<void> check(const SimulatedEyeSettings& s) {
   TRY(check(s.fifo_frames >= 1, s.serial, "fifo_frames", s.fifo_frames, "1 or more"));
   TRY(check(s.frame_rate_hz == 0.0 || (s.frame_rate_hz >= 1e-3 && s.frame_rate_hz <= 1e6), s.serial, "frame_rate_hz",
             s.frame_rate_hz, "0 (unpaced) or 0.001 to 1000000"));
-  return s.faults.validate(s.optics.eye.ommatidia());
+  TRY(s.board.eye.validate());
+  return s.faults.validate(s.board.eye.ommatidia());
 }
 
 }  // namespace
 
 Result<std::unique_ptr<SimulatedEye>> SimulatedEye::create(SimulatedEyeSettings settings, hal::Clock& clock) {
-  if (settings.optics.profile.shells.empty()) {
-    settings.optics.profile = AngularProfile::flat_top(settings.optics.eye.acceptance_rad);
-  }
-  TRY(settings.optics.validate());
-  for (const int channel : settings.sensor.dead) settings.faults.invalid_channels.push_back({channel, 0});
+  for (const int channel : settings.board.sensor.dead) settings.faults.invalid_channels.push_back({channel, 0});
   TRY(check(settings));
-  Sensor sensor = TRY(Sensor::create(settings.sensor));
-  for (const std::string& step : settings.steps_off) TRY(sensor.enable(step, false));
-  std::vector<std::vector<double>> signals;
-  for (const Scene& scene : settings.scenes) signals.push_back(TRY(settings.optics.expose(scene)));
+  std::vector<Simulation> simulations;
+  for (Scene scene : settings.scenes) {
+    for (const std::string& effect : settings.effects_off) {
+      TRY(effect_named(effect));
+      scene.effects[effect] = Forced::off;
+    }
+    simulations.push_back(
+        TRY(Simulation::create(settings.board, std::move(scene), settings.seed, settings.sensitivity, settings.plan)));
+  }
   std::sort(settings.faults.lost_frames.begin(), settings.faults.lost_frames.end());
-  return std::unique_ptr<SimulatedEye>(
-      new SimulatedEye(std::move(settings), std::move(sensor), std::move(signals), clock));
+  return std::unique_ptr<SimulatedEye>(new SimulatedEye(std::move(settings), std::move(simulations), clock));
 }
 
-SimulatedEye::SimulatedEye(SimulatedEyeSettings settings, Sensor sensor, std::vector<std::vector<double>> signals,
-                           hal::Clock& clock)
+SimulatedEye::SimulatedEye(SimulatedEyeSettings settings, std::vector<Simulation> simulations, hal::Clock& clock)
     : settings_(std::move(settings)),
-      sensor_(std::move(sensor)),
-      signals_(std::move(signals)),
+      simulations_(std::move(simulations)),
       clock_(clock),
       power_on_ns_(clock.now_ns()) {
-  const int channels = settings_.optics.eye.ommatidia();
+  const int channels = settings_.board.eye.ommatidia();
   const auto m = static_cast<std::size_t>(channels);
   description_ = {"sim",
                   settings_.serial,
                   "simulated",
                   channels,
-                  settings_.sensor.bits,
+                  settings_.board.sensor.bits,
                   settings_.frame_rate_hz,
                   std::vector<std::int32_t>(m)};
   std::iota(description_.ommatidium_of_channel.begin(), description_.ommatidium_of_channel.end(), 0);
-  levels_lsb_.resize(m);
+  for (const Simulation& simulation : simulations_) description_.provenance += provenance_of(simulation.plan());
   codes_.resize(m);
   valid_.resize(m);
 }
 
-std::span<const double> SimulatedEye::noise_free(std::size_t scene_index) const noexcept {
-  return signals_[scene_index];
+std::span<const double> SimulatedEye::noise_free(std::uint64_t frame) {
+  return simulations_[scene_of_frame(frame)].noise_free(frame);
+}
+
+std::span<const double> SimulatedEye::levels_lsb(std::uint64_t frame) {
+  return simulations_[scene_of_frame(frame)].levels_lsb(frame);
+}
+
+const Plan& SimulatedEye::plan(std::size_t scene_index) const noexcept {
+  return simulations_[scene_index].plan();
 }
 
 std::size_t SimulatedEye::scene_of_frame(std::uint64_t frame) const noexcept {
-  return static_cast<std::size_t>(frame / static_cast<std::uint64_t>(settings_.frames_per_scene) % signals_.size());
+  return static_cast<std::size_t>(frame / static_cast<std::uint64_t>(settings_.frames_per_scene) % simulations_.size());
 }
 
 std::int64_t SimulatedEye::exposure_start_ns(std::uint64_t frame) const noexcept {
@@ -138,17 +146,17 @@ Result<hal::SampleBlock> SimulatedEye::do_read(std::int64_t deadline_ns) {
 Result<hal::SampleBlock> SimulatedEye::deliver(std::int64_t now_ns) {
   const std::uint64_t frame = next_++;
   hal::SampleBlock block;
-  block.flags.saturated = sensor_.digitise(signals_[scene_of_frame(frame)], settings_.seed, frame, levels_lsb_, codes_);
+  block.flags.saturated = simulations_[scene_of_frame(frame)].codes(frame, codes_);
   std::fill(valid_.begin(), valid_.end(), std::uint8_t{1});
   for (const InvalidChannel& fault : settings_.faults.invalid_channels) {
     if (frame < fault.from_frame) continue;
     const auto channel = static_cast<std::size_t>(fault.channel);
     valid_[channel] = 0;
-    codes_[channel] = settings_.sensor.largest_code() / 2;
+    codes_[channel] = settings_.board.sensor.largest_code() / 2;
   }
   block.codes = codes_;
   block.valid = valid_;
-  block.bits = settings_.sensor.bits;
+  block.bits = settings_.board.sensor.bits;
   block.frame = frame;
   block.t_ns = (paced() ? exposure_start_ns(frame) : now_ns) - power_on_ns_;
   if (!paced()) block.t_ns = std::max(block.t_ns, last_t_ns_ + 1);

@@ -12,18 +12,18 @@
 #include "hal/sample_source.hpp"
 #include "hal/sensor_settings.hpp"
 #include "sim/device_faults.hpp"
-#include "sim/optics.hpp"
 #include "sim/scene/scene.hpp"
-#include "sim/sensor.hpp"
+#include "sim/simulation.hpp"
 
 namespace compueye::sim {
 
 struct SimulatedEyeSettings {
-  Optics optics;                             ///< an empty profile becomes the flat top of eye.acceptance_rad
-  std::vector<Scene> scenes;                 ///< at least one; shown in turn, over and over
-  int frames_per_scene = 1;                  ///< >= 1
-  hal::SensorSettings sensor;                ///< its dead channels are invalid in every frame
-  std::vector<std::string> steps_off;        ///< names of sensor steps to switch off
+  EyeToSimulate board;                                    ///< its dead channels are invalid in every frame
+  std::vector<Scene> scenes;                              ///< at least one; shown in turn, over and over
+  int frames_per_scene = 1;                               ///< >= 1
+  std::vector<std::string> effects_off;                   ///< names of effects to switch off, whatever the scenes say
+  Sensitivity sensitivity = Sensitivity::of_small_eye();  ///< by which effects are planned
+  PlanMode plan = PlanMode::automatic;
   double frame_rate_hz = 0.0;                ///< 0: unpaced, a frame whenever one is read; else up to 1e6
   std::uint64_t seed = 0;                    ///< of every random draw
   int fifo_frames = 4;                       ///< frames the device keeps for a late reader, >= 1
@@ -44,20 +44,23 @@ struct SimulatedEyeSettings {
 /// or by stop(), which counts them as `stopped`. config_id is 0, the channels are the ommatidia in order.
 class SimulatedEye final : public hal::SampleSource {
  public:
-  /// Integrates every scene through the optics, so it may take seconds. `clock` must outlive the eye. Errors: those of
-  /// the settings' parts; usage (no scene), out_of_range, not_found (a step to switch off).
+  /// Renders the first frame of every scene, so it may take seconds. `clock` must outlive the eye. Errors: those of
+  /// Simulation::create(); usage (no scene), out_of_range, not_found (an effect to switch off).
   [[nodiscard]] static hal::Result<std::unique_ptr<SimulatedEye>> create(SimulatedEyeSettings settings,
                                                                          hal::Clock& clock);
 
-  /// The M noise-free signals of scene `scene_index` (0 .. scenes - 1), in fully seen pixels at white.
-  [[nodiscard]] std::span<const double> noise_free(std::size_t scene_index) const noexcept;
+  /// The M signals that the optics deliver in frame `frame`, in fully seen pixels at white, and what the converter is
+  /// given in LSB. Valid until the next frame.
+  [[nodiscard]] std::span<const double> noise_free(std::uint64_t frame);
+  [[nodiscard]] std::span<const double> levels_lsb(std::uint64_t frame);
+  /// The effects of scene `scene_index` (0 .. scenes - 1), and why.
+  [[nodiscard]] const Plan& plan(std::size_t scene_index) const noexcept;
   /// Which scene is shown in frame `frame`.
   [[nodiscard]] std::size_t scene_of_frame(std::uint64_t frame) const noexcept;
   [[nodiscard]] const SimulatedEyeSettings& settings() const noexcept { return settings_; }
 
  private:
-  SimulatedEye(SimulatedEyeSettings settings, Sensor sensor, std::vector<std::vector<double>> signals,
-               hal::Clock& clock);
+  SimulatedEye(SimulatedEyeSettings settings, std::vector<Simulation> simulations, hal::Clock& clock);
 
   [[nodiscard]] const hal::SourceDescription& do_describe() const noexcept override { return description_; }
   hal::Result<void> do_start() override;
@@ -73,8 +76,7 @@ class SimulatedEye final : public hal::SampleSource {
   hal::Result<hal::SampleBlock> deliver(std::int64_t now_ns);
 
   SimulatedEyeSettings settings_;
-  Sensor sensor_;
-  std::vector<std::vector<double>> signals_;  // one a scene
+  std::vector<Simulation> simulations_;  // one a scene
   hal::Clock& clock_;
   hal::SourceDescription description_;
   std::int64_t power_on_ns_ = 0;  // Clock time of device time 0
@@ -84,7 +86,6 @@ class SimulatedEye final : public hal::SampleSource {
   std::uint64_t next_ = 0;       // oldest frame whose fate is open
   bool overrun_pending_ = false;
   hal::FrameAccount account_;
-  std::vector<double> levels_lsb_;
   std::vector<std::int32_t> codes_;
   std::vector<std::uint8_t> valid_;
 };

@@ -89,6 +89,27 @@ struct Simulation::Parts {
       integrate(scene_s(frame), signals);
     }
   }
+
+  /// levels = what the converter is given.
+  void detect(std::span<const double> of, std::uint64_t frame) noexcept {
+    const double lsb = board.sensor.lsb();
+    for (std::size_t m = 0; m < levels.size(); ++m) levels[m] = of[m] / lsb;
+    std::fill(stuck.begin(), stuck.end(), -1);
+    FrameInWork work{frame, start_s(frame), levels, stuck};
+    for (const auto& step : workings.steps) step->apply(work);
+  }
+
+  /// True when at least one channel reaches the largest code.
+  [[nodiscard]] bool convert(std::span<std::int32_t> codes) const noexcept {
+    const std::int32_t largest = board.sensor.largest_code();
+    bool saturated = false;
+    for (std::size_t m = 0; m < codes.size(); ++m) {
+      codes[m] = static_cast<std::int32_t>(std::clamp(std::round(levels[m]), 0.0, static_cast<double>(largest)));
+      if (stuck[m] >= 0) codes[m] = std::min(stuck[m], largest);
+      saturated = saturated || codes[m] == largest;
+    }
+    return saturated;
+  }
 };
 
 Simulation::Simulation(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -138,27 +159,19 @@ std::span<const double> Simulation::noise_free(std::uint64_t frame) {
 }
 
 std::span<const double> Simulation::levels_lsb(std::uint64_t frame) {
-  Parts& p = *parts_;
-  p.expose(frame);
-  const double lsb = p.board.sensor.lsb();
-  for (std::size_t m = 0; m < p.levels.size(); ++m) p.levels[m] = p.signals[m] / lsb;
-  std::fill(p.stuck.begin(), p.stuck.end(), -1);
-  FrameInWork work{frame, p.start_s(frame), p.levels, p.stuck};
-  for (const auto& step : p.workings.steps) step->apply(work);
-  return p.levels;
+  parts_->expose(frame);
+  parts_->detect(parts_->signals, frame);
+  return parts_->levels;
 }
 
 bool Simulation::codes(std::uint64_t frame, std::span<std::int32_t> codes) {
-  (void)levels_lsb(frame);
-  Parts& p = *parts_;
-  const std::int32_t largest = p.board.sensor.largest_code();
-  bool saturated = false;
-  for (std::size_t m = 0; m < codes.size(); ++m) {
-    codes[m] = static_cast<std::int32_t>(std::clamp(std::round(p.levels[m]), 0.0, static_cast<double>(largest)));
-    if (p.stuck[m] >= 0) codes[m] = std::min(p.stuck[m], largest);
-    saturated = saturated || codes[m] == largest;
-  }
-  return saturated;
+  parts_->expose(frame);
+  return codes_of(parts_->signals, frame, codes);
+}
+
+bool Simulation::codes_of(std::span<const double> signals, std::uint64_t frame, std::span<std::int32_t> codes) {
+  parts_->detect(signals, frame);
+  return parts_->convert(codes);
 }
 
 }  // namespace compueye::sim

@@ -27,6 +27,9 @@ class Simulation {
   /// The codes of frame `frame`, M of them; true when at least one channel reached the largest code.
   [[nodiscard]] bool codes(std::uint64_t frame, std::span<std::int32_t> codes);
 
+  /// The same of other signals than the scene's (M, in fully seen pixels at white): a detector alone.
+  [[nodiscard]] bool codes_of(std::span<const double> signals, std::uint64_t frame, std::span<std::int32_t> codes);
+
   /// The same before they are rounded and clipped, in LSB.
   [[nodiscard]] std::span<const double> levels_lsb(std::uint64_t frame);
 

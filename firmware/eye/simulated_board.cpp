@@ -38,10 +38,11 @@ hal::Result<std::vector<float>> one_frame(const Board& narrow, const sim::Scene&
 
 sim::SimulatedEyeSettings simulated_eye_settings(const Board& board, sim::Scene scene, std::uint64_t seed) {
   sim::SimulatedEyeSettings settings;
-  settings.optics.eye = board.eye;
-  settings.optics.object = board.object;
+  settings.board.eye = board.eye;
+  settings.board.object = board.object;
+  settings.board.sensor = board.sensor;
+  settings.board.frame_rate_hz = board.source.frame_rate_hz;
   settings.scenes.push_back(std::move(scene));
-  settings.sensor = board.sensor;
   settings.seed = seed;
   settings.fifo_frames = board.source.fifo_frames;
   settings.serial = board.source.serial;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdio>
 
 namespace compueye::sim {
 namespace {
@@ -86,6 +86,19 @@ const PlannedEffect& Plan::of(std::string_view effect) const {
 bool Plan::leaves_nothing_out() const noexcept {
   return std::all_of(effects.begin(), effects.end(),
                      [](const PlannedEffect& each) { return each.on() || each.decision == Decision::not_called; });
+}
+
+std::string provenance_of(const Plan& plan) {
+  std::string text;
+  for (const PlannedEffect& each : plan.effects) {
+    if (each.decision == Decision::not_called) continue;
+    char bound[32];
+    std::snprintf(bound, sizeof bound, "%.3g", each.bound_lsb);
+    text += "effect " + std::string(each.effect->name) + " = " + std::string(name(each.decision));
+    if (!each.called_for_by.empty()) text += "; " + each.called_for_by + "; at most " + bound + " LSB";
+    text += "\n";
+  }
+  return text;
 }
 
 Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensitivity, PlanMode mode) {

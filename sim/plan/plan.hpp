@@ -44,6 +44,9 @@ struct Plan {
   [[nodiscard]] bool leaves_nothing_out() const noexcept;
 };
 
+/// Lines "effect NAME = DECISION; WHY; at most BOUND LSB": what has to be known of samples to trace a result.
+[[nodiscard]] std::string provenance_of(const Plan& plan);
+
 /// What is left out may add this share of what the noise itself makes of a reconstruction.
 inline constexpr double share_left_out = 0.1;
 

@@ -15,6 +15,7 @@
 #include "sim/optics.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
 #include "sim/scene/scene_truth.hpp"
+#include "sim/simulation.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -55,6 +56,12 @@ const std::vector<double>& signals_of(const EvaluationScene& scene, Motion motio
   return scene.moving[moving_frames - std::min(left, moving_frames)];
 }
 
+/// In the dark, to be given signals.
+Result<sim::Simulation> sensor_alone(const Board& board, std::uint64_t seed) {
+  auto eye = simulated_eye_settings(board, sim::scene_on(board.object, "dark", hal::Image(1, 1)), seed);
+  return sim::Simulation::create(std::move(eye.board), std::move(eye.scenes.front()), seed, eye.sensitivity);
+}
+
 }  // namespace
 
 std::vector<std::string> usual_scenes(const Board& board) {
@@ -66,8 +73,7 @@ std::vector<std::string> usual_scenes(const Board& board) {
 Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board, const std::vector<std::string>& names,
                                                             bool moving, const recon::Progress& progress) {
   for (const std::string& name : names) TRY(check_name(name));
-  sim::Optics optics = simulated_eye_settings(board, {}, 0).optics;
-  optics.profile = sim::AngularProfile::flat_top(optics.eye.acceptance_rad);
+  const sim::Optics optics{board.eye, board.object, sim::AngularProfile::flat_top(board.eye.acceptance_rad)};
   std::vector<EvaluationScene> scenes;
   while (scenes.size() < evaluation_scenes) {
     if (!progress("evaluation scenes", static_cast<double>(scenes.size()), static_cast<double>(evaluation_scenes))) {
@@ -91,7 +97,6 @@ Result<std::vector<FrameSequence>> take_frames(const Board& board, const std::ve
                                                const std::vector<std::uint8_t>& sees, const NoiseLevel& level,
                                                Motion motion) {
   const Board noisy = with_noise(board, level.times);
-  const sim::Sensor sensor = TRY(sim::Sensor::create(simulated_eye_settings(noisy, {}, 0).sensor));
   const auto channels = static_cast<std::size_t>(board.eye.ommatidia());
   hal::SourceDescription description;
   description.channels = board.eye.ommatidia();
@@ -101,14 +106,14 @@ Result<std::vector<FrameSequence>> take_frames(const Board& board, const std::ve
   Correction correction = TRY(Correction::create(correction_settings(noisy, sees), description));
   std::vector<std::uint8_t> valid(channels, 1);
   for (const int dead : board.sensor.dead) valid[static_cast<std::size_t>(dead)] = 0;
-  std::vector<double> levels_lsb(channels);
   std::vector<std::int32_t> codes(channels);
   std::vector<FrameSequence> sequences;
   for (const EvaluationScene& scene : scenes) {
     FrameSequence& sequence = sequences.emplace_back();
+    sim::Simulation sensor = TRY(sensor_alone(noisy, scene.seed));
     for (std::size_t f = motion == Motion::none ? sequence_frames - 1 : 0; f < sequence_frames; ++f) {
       hal::SampleBlock block;
-      block.flags.saturated = sensor.digitise(signals_of(scene, motion, f), scene.seed, f, levels_lsb, codes);
+      block.flags.saturated = sensor.codes_of(signals_of(scene, motion, f), f, codes);
       block.codes = codes;
       block.valid = valid;
       block.bits = board.sensor.bits;

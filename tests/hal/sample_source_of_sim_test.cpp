@@ -18,12 +18,12 @@ constexpr double rate_hz = 100.0;
 
 sim::SimulatedEyeSettings small_eye() {
   sim::SimulatedEyeSettings settings;
-  settings.optics.eye.rows = settings.optics.eye.columns = side;
-  settings.optics.eye.interommatidial_rad = 0.05;
-  settings.optics.eye.acceptance_rad = 0.14;
+  settings.board.eye.rows = settings.board.eye.columns = side;
+  settings.board.eye.interommatidial_rad = 0.05;
+  settings.board.eye.acceptance_rad = 0.14;
   settings.scenes.push_back(
-      sim::scene_on(settings.optics.object, "dots", sim::render_built_in("dots", 16, 16, 1).value()));
-  settings.sensor = {.bits = 12, .full_scale = 64.0, .read_noise_lsb = 2.0, .dark_level_lsb = 20.0};
+      sim::scene_on(settings.board.object, "dots", sim::render_built_in("dots", 16, 16, 1).value()));
+  settings.board.sensor = {.bits = 12, .full_scale = 64.0, .read_noise_lsb = 2.0, .dark_level_lsb = 20.0};
   settings.frame_rate_hz = rate_hz;
   return settings;
 }

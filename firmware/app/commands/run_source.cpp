@@ -76,7 +76,7 @@ Result<std::unique_ptr<recording::RecordingSource>> with_recorder(const Recordin
                                                                   hal::SampleSource& source, hal::Clock& clock) {
   recording::RecordingSettings settings;
   settings.path = named_stream(request.path) == STDOUT_FILENO ? "-" : request.path;
-  settings.settings = header_text(request, board);
+  settings.settings = header_text(request, board) + source.describe().provenance;
   settings.unix_minus_clock_ns = unix_minus(clock);
   settings.when_full = request.lossless ? recording::WhenFull::wait : recording::WhenFull::skip;
   settings.stop_on_failure = request.stop_on_failure;

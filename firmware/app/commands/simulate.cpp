@@ -20,6 +20,8 @@
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
 #include "hal/try.hpp"
+#include "sim/effects/effect.hpp"
+#include "sim/plan/plan.hpp"
 #include "sim/simulated_eye.hpp"
 
 namespace compueye::firmware {
@@ -48,35 +50,55 @@ Result<void> check(const SimulateRequest& o) {
               "is missing: name the .npy file for the samples, for example --out y.npy");
 }
 
-/// What the simulated eye does to the light, on or off: for programs, and as a table.
-class Effects {
+/// Which effects are simulated and why: for programs, and as a table.
+class Explanation {
  public:
-  Effects(const Board& board, const sim::Scene& scene, const SimulateRequest& o);
+  Explanation(const sim::Plan& plan, double frames);
 
   Value::List list;
-  Table table{{{"effect", Align::left}, {"", Align::left}, {"", Align::left}}};
+  Table table{{{"effect", Align::left},
+               {"called for by", Align::left},
+               {"at most, LSB", Align::right},
+               {"NMSE", Align::right},
+               {"decision", Align::left},
+               {"time", Align::right}}};
 
  private:
-  void add(const char* name, bool on, const std::string& what) {
-    list.push_back(Figures{{"name", name}, {"on", on}, {"what", what}});
-    table.add({name, on ? "on" : "off", on ? what : ""});
+  [[nodiscard]] double seconds_of(const sim::PlannedEffect& e) const {
+    return e.on() ? e.cost.set_up_s + frames_ * e.cost.frame_s : 0.0;
   }
+
+  double frames_;
 };
 
-Effects::Effects(const Board& board, const sim::Scene& scene, const SimulateRequest& o) {
-  const hal::SensorSettings& s = board.sensor;
-  const bool sensor = !o.noise_free || o.codes;
-  const std::optional<double> distance = scene.surfaces.front().distance_mm;
-  const bool away = distance && *distance != board.object.distance_mm;
-  add("acceptance cone", true, "flat top, light integrated below pixel size");
-  add("scene off the object plane", away,
-      away ? significant(*distance, 4) + " mm instead of " + significant(board.object.distance_mm, 4) : "");
-  add("dark level", sensor && s.dark_level_lsb > 0.0,
-      significant(s.dark_level_lsb, 4) + " LSB" + (o.codes ? "" : ", taken out again"));
-  add("read noise", !o.noise_free && s.read_noise_lsb > 0.0, significant(s.read_noise_lsb, 4) + " LSB");
-  add("quantisation", sensor, fmt::format("{} bits, one LSB is {} of a white pixel", s.bits, significant(s.lsb(), 4)));
-  add("dead channels", !s.dead.empty(), fmt::format("{}", s.dead.size()));
-  add("lost frames", false, "");
+Explanation::Explanation(const sim::Plan& plan, double frames) : frames_(frames) {
+  double whole = 0.0;
+  for (const sim::PlannedEffect& e : plan.effects) whole += seconds_of(e);
+  for (const sim::PlannedEffect& e : plan.effects) {
+    const double share = whole > 0.0 ? seconds_of(e) / whole : 0.0;
+    const bool called = !e.called_for_by.empty();
+    list.push_back(Figures{{"name", std::string(e.effect->name)},
+                           {"group", std::string(name(e.effect->group))},
+                           {"on", e.on()},
+                           {"decision", std::string(name(e.decision))},
+                           {"called_for_by", e.called_for_by},
+                           {"bound_lsb", e.bound_lsb},
+                           {"nmse", e.nmse},
+                           {"time_share", share}});
+    table.add({std::string(e.effect->name), called ? e.called_for_by : "-", called ? significant(e.bound_lsb, 2) : "",
+               called ? significant(e.nmse, 2) : "", std::string(name(e.decision)),
+               e.on() ? fmt::format("{:.0f} %", 100.0 * share) : ""});
+  }
+}
+
+/// What the plan adds up to, in a sentence.
+std::string sum_of(const sim::Plan& plan) {
+  const std::string measured = plan.sensitivity.measured ? "measured for this eye" : "of the paper's small eye";
+  return fmt::format(
+      "Noise is {} LSB of {} and makes an NMSE of about {} (sensitivity {}); what is left out adds at "
+      "most {}.\n",
+      significant(plan.noise_lsb, 2), significant(plan.signal_rms_lsb, 3), significant(plan.noise_nmse, 2), measured,
+      significant(plan.left_out_nmse, 2));
 }
 
 /// All frames after each other, M values each.
@@ -98,21 +120,29 @@ void append(const hal::SampleBlock& block, const Board& board, bool codes, Sampl
   if (block.flags.saturated) ++samples.saturated_frames;
 }
 
-Result<Samples> take(const Board& board, const sim::Scene& scene, const SimulateRequest& o, const Session& session) {
-  hal::VirtualClock clock;
+using Eye = std::unique_ptr<sim::SimulatedEye>;
+
+Result<Eye> eye_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o, hal::Clock& clock) {
   auto settings = simulated_eye_settings(board, scene, o.seed);
-  if (o.noise_free) settings.steps_off.emplace_back("read noise");
-  const auto eye = TRY(sim::SimulatedEye::create(std::move(settings), clock));
-  TRY(eye->start());
-  const std::span<const double> signal = eye->noise_free(0);
+  for (const sim::Effect* effect : sim::effects()) {
+    if (o.noise_free && effect->error == sim::ErrorKind::white) settings.effects_off.emplace_back(effect->name);
+  }
+  return sim::SimulatedEye::create(std::move(settings), clock);
+}
+
+Result<Samples> take(const Board& board, sim::SimulatedEye& eye, const SimulateRequest& o, const Session& session) {
+  TRY(eye.start());
+  const double lsb = board.sensor.lsb(), dark = board.sensor.dark_level_lsb;
   Samples samples;
   for (std::int64_t f = 0; f < o.frames; ++f) {
     TRY(session.check_stop());
-    append(TRY(eye->read(0)), board, o.codes, samples);
+    const std::size_t begin = samples.values.size();
+    append(TRY(eye.read(0)), board, o.codes, samples);
     if (!o.noise_free || o.codes) continue;
-    for (std::size_t c = 0; c < signal.size(); ++c) {
-      float& value = samples.values[samples.values.size() - signal.size() + c];
-      if (!std::isnan(value)) value = static_cast<float>(signal[c]);
+    const std::span<const double> levels = eye.levels_lsb(static_cast<std::uint64_t>(f));
+    for (std::size_t c = 0; c < levels.size(); ++c) {
+      float& value = samples.values[begin + c];
+      if (!std::isnan(value)) value = static_cast<float>((levels[c] - dark) * lsb);
     }
   }
   return samples;
@@ -139,8 +169,9 @@ Result<void> write_truth(const Board& board, const sim::Scene& scene, const Simu
   return write_npy(o.truth, shape, std::span<const float>(pixels));
 }
 
-Figures report_of(const Board& board, const sim::Scene& scene, const Samples& samples, const SimulateRequest& o) {
-  const Effects effects(board, scene, o);
+Figures report_of(const Board& board, const sim::Scene& scene, const sim::Plan& plan, const Samples& samples,
+                  const SimulateRequest& o) {
+  const Explanation effects(plan, static_cast<double>(o.frames));
   Figures f{{"board", board.name},
             {"scene", scene.name},
             {"frames", o.frames},
@@ -153,9 +184,14 @@ Figures report_of(const Board& board, const sim::Scene& scene, const Samples& sa
             {"dead_channels", board.sensor.dead.size()},
             {"saturated_frames", samples.saturated_frames},
             {"effects", effects.list},
+            {"noise_lsb", plan.noise_lsb},
+            {"noise_nmse", plan.noise_nmse},
+            {"left_out_lsb", plan.left_out_lsb},
+            {"left_out_nmse", plan.left_out_nmse},
+            {"sensitivity_measured", plan.sensitivity.measured},
             {"samples_file", o.out},
             {"truth_file", o.truth}};
-  if (o.explain) f.say(effects.table.text());
+  if (o.explain) f.say(effects.table.text() + sum_of(plan));
   if (!o.out.empty()) {
     f.tell("{samples_file}: {frames:# frame} of {channels} samples of {board} in front of {scene}\n");
   }
@@ -172,11 +208,13 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
   TRY(request.overrides.apply(board));
   const sim::Scene scene = TRY(choose_scene(board, request.scene));
   for (const std::string& file : {request.out, request.truth, request.weights}) TRY(try_output(file));
-  const Samples samples = TRY(take(board, scene, request, session));
+  hal::VirtualClock clock;
+  const Eye eye = TRY(eye_of(board, scene, request, clock));
+  const Samples samples = TRY(take(board, *eye, request, session));
   TRY(session.seal());
   TRY(write(samples, board, request));
   TRY(write_truth(board, scene, request));
-  return session.print(report_of(board, scene, samples, request));
+  return session.print(report_of(board, scene, eye->plan(0), samples, request));
 }
 
 Action declare(OptionList& options) {
