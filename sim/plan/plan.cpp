@@ -101,7 +101,8 @@ std::string provenance_of(const Plan& plan) {
   return text;
 }
 
-Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensitivity, PlanMode mode) {
+Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensitivity, PlanMode mode,
+                  std::span<const Effect* const> list) {
   Plan plan;
   plan.sensitivity = sensitivity;
   plan.signal_rms_lsb = circumstances.preview.rms;
@@ -113,7 +114,7 @@ Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensiti
     return sensitivity.of(kind) * share * share;
   };
   plan.noise_nmse = nmse_of(plan.noise_lsb, ErrorKind::white);
-  for (const Effect* effect : effects()) {
+  for (const Effect* effect : list) {
     PlannedEffect& planned = plan.effects.emplace_back(look_at(*effect, circumstances));
     planned.nmse = nmse_of(planned.bound_lsb, effect->error);
     if (planned.decision == Decision::forced_on || planned.decision == Decision::forced_off) continue;

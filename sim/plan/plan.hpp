@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,6 @@ enum class PlanMode { automatic, everything, nothing };
 /// Leaves out the effects that save most time for their error, while what they add up to stays within the share; what
 /// the scene forces is as it says. `everything`: all there are, called for or not; `nothing`: none.
 [[nodiscard]] Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensitivity,
-                                PlanMode mode = PlanMode::automatic);
+                                PlanMode mode = PlanMode::automatic, std::span<const Effect* const> list = effects());
 
 }  // namespace compueye::sim
