@@ -18,7 +18,7 @@ struct EyeToSimulate {
   hal::BuildSettings build;
   hal::SensorSettings sensor;
   hal::DetectorSettings detector;
-  double frame_rate_hz = 0.0;  ///< of the device, > 0, whether or not anybody waits for it
+  double frame_rate_hz = 100.0;  ///< of the device, > 0, whether or not anybody waits for it
 
   [[nodiscard]] double period_s() const noexcept { return 1.0 / frame_rate_hz; }
   /// Light is gathered so long in a frame.
