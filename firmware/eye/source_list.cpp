@@ -9,6 +9,7 @@
 #include "drivers/device/device_source.hpp"
 #include "drivers/transport/hid_hidapi.hpp"
 #include "drivers/transport/usb_libusb.hpp"
+#include "firmware/eye/planned_eye.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/eye/source_kinds.hpp"
 #include "hal/try.hpp"
@@ -30,7 +31,7 @@ hal::Result<Source> simulated(const Board& board, EyeWanted wanted, hal::Clock& 
   auto settings = simulated_eye_settings(board, std::move(wanted.scene), wanted.seed);
   if (!wanted.lossless) settings.frame_rate_hz = board.source.frame_rate_hz;
   settings.frame_limit = wanted.frame_limit;
-  return TRY(sim::SimulatedEye::create(std::move(settings), clock));
+  return TRY(planned_eye(board, std::move(settings), clock, wanted.progress));
 }
 
 hal::Result<Source> attached(const Board& board, const protocol::Bus& bus, hal::Clock& clock) {

@@ -11,6 +11,7 @@
 #include "hal/byte_transport.hpp"
 #include "hal/clock.hpp"
 #include "hal/sample_source.hpp"
+#include "recon/problem/progress.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace compueye::firmware {
@@ -21,10 +22,11 @@ struct EyeWanted {
   std::uint64_t seed = 0;  ///< of a simulated eye's noise
   bool lossless = false;   ///< a simulated eye waits for its reader instead of keeping the board's rate
   std::optional<std::uint64_t> frame_limit;  ///< frames that a simulated eye makes at most
+  recon::Progress progress = {};             ///< of what a simulated eye's plan may take
 };
 
 /// The eye of a board: simulated, or on a cable and identified: the board's serial, or the first one there is where the
-/// board names none. `clock` must outlive it. Errors: those of SimulatedEye::create() and DeviceSource::create();
+/// board names none. `clock` must outlive it. Errors: those of planned_eye() and DeviceSource::create();
 /// mismatch (an eye of another number of channels or depth than the board says), usage (--lossless on a cable).
 [[nodiscard]] hal::Result<std::unique_ptr<hal::SampleSource>> board_source(const Board& board, EyeWanted wanted,
                                                                            hal::Clock& clock);

@@ -131,7 +131,8 @@ Result<void> record(const RecordRequest& o, Session& session) {
   TRY(o.overrides.apply(board));
   sim::Scene scene = TRY(choose_scene(board, o.scene));
   const std::string scene_name = board.source.simulated() ? scene.name : "an unknown scene";
-  const auto eye = TRY(board_source(board, {std::move(scene), o.seed, o.lossless, std::nullopt}, session.clock()));
+  const auto eye = TRY(
+      board_source(board, {std::move(scene), o.seed, o.lossless, std::nullopt, session.progress()}, session.clock()));
   const auto source =
       TRY(with_recorder({o.out, scene_name, o.scene.seed, o.seed, o.lossless}, board, *eye, session.clock()));
   TRY(source->start());

@@ -148,7 +148,7 @@ Result<void> BoardRun::make_eye() {
   const std::int64_t begin_ns = session_.clock().now_ns();
   const recon::Progress progress = session_.progress();
   progress(options_.replays() ? "recording" : board_.source.simulated() ? "simulated eye" : "eye", 0.0, 0.0);
-  source_ = TRY(RunSource::make(options_, board_, scene_, frames(), session_.clock()));
+  source_ = TRY(RunSource::make(options_, board_, scene_, frames(), session_.clock(), progress));
   report_.source = source_->name();
   if (!source_->mismatch().empty()) choice_notes_.push_back(source_->mismatch());
   TRY(choose_eye(progress));

@@ -84,7 +84,7 @@ Result<std::unique_ptr<recording::RecordingSource>> with_recorder(const Recordin
 }
 
 Result<RunSource> RunSource::make(const RunOptions& options, const Board& board, const sim::Scene& scene,
-                                  std::uint64_t frames, hal::Clock& clock) {
+                                  std::uint64_t frames, hal::Clock& clock, const recon::Progress& progress) {
   RunSource made;
   if (options.replays()) {
     auto replay = TRY(recording::ReplaySource::open(options.replay, options.pace(), clock));
@@ -94,7 +94,7 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
     made.source_ = std::move(replay);
     return made;
   }
-  EyeWanted wanted{scene, options.seed, options.lossless, std::nullopt};
+  EyeWanted wanted{scene, options.seed, options.lossless, std::nullopt, progress};
   // Without a limit the frames read ahead of the last one would be made only to be thrown away.
   if (options.lossless && frames > 0) wanted.frame_limit = frames;
   made.source_ = TRY(board_source(board, std::move(wanted), clock));

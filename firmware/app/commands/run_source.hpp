@@ -46,7 +46,8 @@ class RunSource {
   /// `frames`: how many are wanted, 0 = all. `clock` must outlive it. Errors: those of board_source() and
   /// ReplaySource::open(); mismatch (a recording of another number of channels or depth than the board's).
   [[nodiscard]] static hal::Result<RunSource> make(const RunOptions& options, const Board& board,
-                                                   const sim::Scene& scene, std::uint64_t frames, hal::Clock& clock);
+                                                   const sim::Scene& scene, std::uint64_t frames, hal::Clock& clock,
+                                                   const recon::Progress& progress);
   /// Where the options ask for a recording, its file is begun, with the lambda that is run with. Errors: those of
   /// with_recorder().
   [[nodiscard]] hal::Result<void> begin_recording(const RunOptions& options, const Board& board,

@@ -13,6 +13,7 @@
 
 #include "firmware/app/command.hpp"
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/planned_eye.hpp"
 #include "firmware/eye/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/atomic_file.hpp"
@@ -122,12 +123,15 @@ void append(const hal::SampleBlock& block, const Board& board, bool codes, Sampl
 
 using Eye = std::unique_ptr<sim::SimulatedEye>;
 
-Result<Eye> eye_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o, hal::Clock& clock) {
+Result<Eye> eye_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o, Session& session,
+                   hal::Clock& clock) {
   auto settings = simulated_eye_settings(board, scene, o.seed);
   for (const sim::Effect* effect : sim::effects()) {
     if (o.noise_free && effect->error == sim::ErrorKind::white) settings.effects_off.emplace_back(effect->name);
   }
-  return sim::SimulatedEye::create(std::move(settings), clock);
+  auto eye = planned_eye(board, std::move(settings), clock, session.progress());
+  session.end_progress();
+  return eye;
 }
 
 Result<Samples> take(const Board& board, sim::SimulatedEye& eye, const SimulateRequest& o, const Session& session) {
@@ -209,7 +213,7 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
   const sim::Scene scene = TRY(choose_scene(board, request.scene));
   for (const std::string& file : {request.out, request.truth, request.weights}) TRY(try_output(file));
   hal::VirtualClock clock;
-  const Eye eye = TRY(eye_of(board, scene, request, clock));
+  const Eye eye = TRY(eye_of(board, scene, request, session, clock));
   const Samples samples = TRY(take(board, *eye, request, session));
   TRY(session.seal());
   TRY(write(samples, board, request));

@@ -9,6 +9,7 @@
 #include "firmware/files/npy.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "recon/metrics.hpp"
+#include "sim/effects/effect.hpp"
 #include "tests/firmware/cli_run/copied_board.hpp"
 
 using namespace compueye;
@@ -105,20 +106,26 @@ TEST_CASE("channels that tell nothing are NaN with weight zero") {
   }
 }
 
-TEST_CASE("--explain says which effects are on and off, and --json the same in one object") {
+TEST_CASE("--explain says which effects are on and off and why, and --json the same in one object") {
   const CopiedBoard board;
-  const Ended text =
-      compueye::test::compueye({"simulate", "--board", board.path().string(), "--explain", "--noise-free"});
+  const Ended text = test::compueye({"simulate", "--board", board.path().string(), "--explain", "--noise-free"});
   CHECK(text.exit_code == 0);
-  CHECK(contains(text.out, "read noise"));
-  CHECK(contains(text.out, "off"));
-  const Ended json = compueye::test::compueye({"simulate", "--board", board.path().string(), "--explain", "--json"});
+  CHECK(contains(text.out, "read_noise"));
+  CHECK(contains(text.out, "off, as the scene says"));
+  const Ended json = test::compueye({"simulate", "--board", board.path().string(), "--explain", "--json"});
   const auto object = nlohmann::json::parse(json.out, nullptr, false);
   REQUIRE_FALSE(object.is_discarded());
-  for (const auto& effect : object["effects"]) {
-    if (effect["name"] == "read noise") CHECK(effect["on"] == true);
+  REQUIRE(object["effects"].size() == sim::effects().size());
+  for (std::size_t k = 0; k < sim::effects().size(); ++k) {
+    const auto& effect = object["effects"][k];
+    CHECK(effect["name"] == sim::effects()[k]->name);
+    const bool called = effect["name"] == "read_noise" || effect["name"] == "dark_level";
+    CHECK(effect["on"] == called);
+    CHECK(effect["decision"] == (called ? "on" : "not called for"));
+    CHECK(effect["called_for_by"].get<std::string>().empty() == !called);
+    CHECK((effect["bound_lsb"] > 0.0) == called);
   }
-  CHECK(object["effects"].size() >= 5);
+  CHECK(object["left_out_nmse"] == 0.0);
 }
 
 TEST_CASE("wrong usage of simulate is refused") {

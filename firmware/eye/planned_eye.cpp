@@ -1,0 +1,56 @@
+#include "firmware/eye/planned_eye.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "firmware/eye/ready_eye.hpp"
+#include "hal/try.hpp"
+#include "recon/sensitivity.hpp"
+#include "sim/scene/scene_truth.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::Result;
+
+/// In the order of sim::ErrorKind.
+sim::Sensitivity handed_over(const recon::Sensitivity& s) {
+  // What does not change a picture at all would let anything pass; a digit of float32 is the least that can be said.
+  constexpr double least = 1e-6;
+  sim::Sensitivity figures{{s.white, s.per_channel, s.common_gain, s.offset, s.row_shape}, true};
+  for (double& kappa : figures.kappa) kappa = std::max(kappa, least);
+  return figures;
+}
+
+/// Of a scene that the object plane's pixels show nothing of, nothing can be measured.
+bool is_black(const hal::Image& truth) {
+  return std::all_of(truth.pixels.begin(), truth.pixels.end(), [](float v) { return v == 0.0F; });
+}
+
+}  // namespace
+
+bool depends_on_sensitivity(const sim::Plan& plan) noexcept {
+  constexpr double plainly = 10.0;  // of the noise: no kind of error is borne so much better than noise
+  return std::any_of(plan.effects.begin(), plan.effects.end(), [&](const sim::PlannedEffect& e) {
+    const bool open = e.decision == sim::Decision::on || e.decision == sim::Decision::left_out;
+    return open && e.effect->error != sim::ErrorKind::white && e.bound_lsb <= plainly * plan.noise_lsb;
+  });
+}
+
+Result<std::unique_ptr<sim::SimulatedEye>> planned_eye(const Board& board, sim::SimulatedEyeSettings settings,
+                                                       hal::Clock& clock, const recon::Progress& progress) {
+  auto eye = TRY(sim::SimulatedEye::create(settings, clock));
+  if (!depends_on_sensitivity(eye->plan(0))) return eye;
+  const hal::Image truth = TRY(sim::scene_truth(settings.scenes.front(), board.object));
+  if (is_black(truth)) return eye;
+  const recon::Progress told =
+      progress ? progress : recon::Progress([](std::string_view, double, double) { return true; });
+  const LivingResponse living = TRY(living_response(board, told));
+  const ReadyEye ready = TRY(ReadyEye::make(board, living, board.cache(), told));
+  const auto found =
+      TRY(recon::measure_sensitivity(living.response, ready.reconstructor(), truth, board.noise_sigma(), told));
+  settings.sensitivity = handed_over(found);
+  return sim::SimulatedEye::create(std::move(settings), clock);
+}
+
+}  // namespace compueye::firmware
