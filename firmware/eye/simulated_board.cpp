@@ -40,7 +40,9 @@ sim::SimulatedEyeSettings simulated_eye_settings(const Board& board, sim::Scene 
   sim::SimulatedEyeSettings settings;
   settings.board.eye = board.eye;
   settings.board.object = board.object;
+  settings.board.build = board.build;
   settings.board.sensor = board.sensor;
+  settings.board.detector = board.detector;
   settings.board.frame_rate_hz = board.source.frame_rate_hz;
   settings.scenes.push_back(std::move(scene));
   settings.seed = seed;
