@@ -18,6 +18,7 @@
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/npy.hpp"
+#include "firmware/files/png.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/table.hpp"
 #include "hal/try.hpp"
@@ -42,12 +43,13 @@ struct SimulateRequest {
   bool codes = false;
   std::string truth;
   std::string weights;
+  std::string png;  ///< the first frame's samples where their ommatidia are
   bool explain = false;
 };
 
 Result<void> check(const SimulateRequest& o) {
   TRY(need(o.frames >= 1 && o.frames <= 1'000'000, "--frames", fmt::format("is {}, expected 1 to 1000000", o.frames)));
-  return need(!o.out.empty() || !o.truth.empty() || o.explain, "--out",
+  return need(!o.out.empty() || !o.truth.empty() || !o.png.empty() || o.explain, "--out",
               "is missing: name the .npy file for the samples, for example --out y.npy");
 }
 
@@ -173,6 +175,25 @@ Result<void> write_truth(const Board& board, const sim::Scene& scene, const Simu
   return write_npy(o.truth, shape, std::span<const float>(pixels));
 }
 
+/// The first frame as the eye's grid: black is no light, white the largest sample, what tells nothing is black. Small
+/// grids are drawn in squares.
+Result<void> write_picture(const Samples& samples, const Board& board, const SimulateRequest& o) {
+  if (o.png.empty()) return {};
+  constexpr int least_side = 160;
+  const int rows = board.eye.rows, cols = board.eye.columns;
+  const int zoom = std::max(1, (least_side + std::max(rows, cols) - 1) / std::max(rows, cols));
+  const std::span<const float> frame(samples.values.data(), static_cast<std::size_t>(board.eye.ommatidia()));
+  float largest = 0.0F;
+  for (const float value : frame) largest = std::isnan(value) ? largest : std::max(largest, value);
+  hal::Image picture(rows * zoom, cols * zoom);
+  for (int r = 0; r < picture.rows && largest > 0.0F; ++r) {
+    for (int c = 0; c < picture.cols; ++c) {
+      picture.at(r, c) = frame[static_cast<std::size_t>(r / zoom * cols + c / zoom)] / largest;
+    }
+  }
+  return write_png(o.png, picture);
+}
+
 Figures report_of(const Board& board, const sim::Scene& scene, const sim::Plan& plan, const Samples& samples,
                   const SimulateRequest& o) {
   const Explanation effects(plan, static_cast<double>(o.frames));
@@ -211,13 +232,14 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
   Board board = TRY(load_board(request.board));
   TRY(request.overrides.apply(board));
   const sim::Scene scene = TRY(choose_scene(board, request.scene));
-  for (const std::string& file : {request.out, request.truth, request.weights}) TRY(try_output(file));
+  for (const std::string& file : {request.out, request.truth, request.weights, request.png}) TRY(try_output(file));
   hal::VirtualClock clock;
   const Eye eye = TRY(eye_of(board, scene, request, session, clock));
   const Samples samples = TRY(take(board, *eye, request, session));
   TRY(session.seal());
   TRY(write(samples, board, request));
   TRY(write_truth(board, scene, request));
+  TRY(write_picture(samples, board, request));
   return session.print(report_of(board, scene, eye->plan(0), samples, request));
 }
 
@@ -236,7 +258,8 @@ Action declare(OptionList& options) {
            ".npy file for the scene on the object plane's pixels, (rows, columns); of each frame if something moves")
       .output();
   options.add("--weights", o->weights, ".npy file for weights shaped like the samples, 0 = tells nothing").output();
-  options.flag("--explain", o->explain, "print which effects are on and off; works without --out too");
+  options.add("--png", o->png, ".png file for the first frame's samples as the eye's grid, the largest white").output();
+  options.flag("--explain", o->explain, "print which effects are on and off and why; works without --out too");
   options.json("print one object and nothing else on stdout");
   return action_of(o, simulate);
 }

@@ -7,6 +7,7 @@
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/ready_eye.hpp"
 #include "firmware/files/npy.hpp"
+#include "firmware/files/png.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
 #include "recon/metrics.hpp"
 #include "sim/effects/effect.hpp"
@@ -126,6 +127,22 @@ TEST_CASE("--explain says which effects are on and off and why, and --json the s
     CHECK((effect["bound_lsb"] > 0.0) == called);
   }
   CHECK(object["left_out_nmse"] == 0.0);
+}
+
+TEST_CASE("--png shows the samples where their ommatidia are, the largest white") {
+  const CopiedBoard board;
+  const auto png = board.outside("y.png");
+  const auto samples = simulated(board, {"--noise-free", "--png", png.string()});
+  const hal::Image picture = firmware::read_png(png.string()).value();
+  CHECK(picture.rows == 160);
+  CHECK(picture.cols == 160);
+  const auto largest = static_cast<double>(*std::max_element(samples.values.begin(), samples.values.end()));
+  for (int i = 0; i < 8; ++i) {
+    for (int k = 0; k < 8; ++k) {
+      const double wanted = static_cast<double>(samples.values[static_cast<std::size_t>(8 * i + k)]) / largest;
+      CHECK(std::fabs(static_cast<double>(picture.at(20 * i + 3, 20 * k + 17)) - wanted) <= 0.5 / 255.0 + 1e-6);
+    }
+  }
 }
 
 TEST_CASE("wrong usage of simulate is refused") {
