@@ -25,6 +25,7 @@
 #include "sim/effects/effect.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/simulated_eye.hpp"
+#include "studies/effects/effect_gallery.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -43,13 +44,14 @@ struct SimulateRequest {
   bool codes = false;
   std::string truth;
   std::string weights;
-  std::string png;  ///< the first frame's samples where their ommatidia are
+  std::string png;      ///< the first frame's samples where their ommatidia are
+  std::string gallery;  ///< a sheet of what each effect changes
   bool explain = false;
 };
 
 Result<void> check(const SimulateRequest& o) {
   TRY(need(o.frames >= 1 && o.frames <= 1'000'000, "--frames", fmt::format("is {}, expected 1 to 1000000", o.frames)));
-  return need(!o.out.empty() || !o.truth.empty() || !o.png.empty() || o.explain, "--out",
+  return need(!o.out.empty() || !o.truth.empty() || !o.png.empty() || !o.gallery.empty() || o.explain, "--out",
               "is missing: name the .npy file for the samples, for example --out y.npy");
 }
 
@@ -232,10 +234,16 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
   Board board = TRY(load_board(request.board));
   TRY(request.overrides.apply(board));
   const sim::Scene scene = TRY(choose_scene(board, request.scene));
-  for (const std::string& file : {request.out, request.truth, request.weights, request.png}) TRY(try_output(file));
+  for (const std::string& file : {request.out, request.truth, request.weights, request.png, request.gallery})
+    TRY(try_output(file));
   hal::VirtualClock clock;
   const Eye eye = TRY(eye_of(board, scene, request, session, clock));
   const Samples samples = TRY(take(board, *eye, request, session));
+  if (!request.gallery.empty()) {
+    const GalleryRequest wanted{request.gallery, static_cast<std::uint64_t>(request.frames) - 1, request.seed};
+    TRY(write_effect_gallery(board, scene, wanted, session.progress()));
+    session.end_progress();
+  }
   TRY(session.seal());
   TRY(write(samples, board, request));
   TRY(write_truth(board, scene, request));
@@ -259,6 +267,8 @@ Action declare(OptionList& options) {
       .output();
   options.add("--weights", o->weights, ".npy file for weights shaped like the samples, 0 = tells nothing").output();
   options.add("--png", o->png, ".png file for the first frame's samples as the eye's grid, the largest white").output();
+  options.add("--gallery", o->gallery, ".png sheet with a row for every effect that is called for: what it changes")
+      .output();
   options.flag("--explain", o->explain, "print which effects are on and off and why; works without --out too");
   options.json("print one object and nothing else on stdout");
   return action_of(o, simulate);
