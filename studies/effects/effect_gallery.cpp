@@ -46,12 +46,12 @@ Result<std::vector<Panel>> row_of(const sim::PlannedEffect& effect, const hal::I
     squares += std::pow(static_cast<double>(with.pixels[m]) - static_cast<double>(without.pixels[m]), 2);
   }
   const double rms = std::sqrt(squares / static_cast<double>(with.pixels.size()));
-  Panel before{"without " + std::string(effect.effect->name), {effect.called_for_by}, std::move(shown)};
+  Panel before{std::string(effect.effect->name), {effect.called_for_by, "the frame without it"}, std::move(shown)};
   before.begins_row = true;
   Panel change = TRY(error_panel(with, without));
-  change.name = std::string(effect.effect->name);
-  change.figures = {fmt::format("changes {} LSB rms", significant(rms, 2)),
-                    fmt::format("at most {} in all frames", significant(effect.bound_lsb, 2))};
+  change.name = "what it changes";
+  change.figures = {fmt::format("{} LSB rms", significant(rms, 2)),
+                    fmt::format("bound {}", significant(effect.bound_lsb, 2))};
   return std::vector<Panel>{std::move(before), std::move(change)};
 }
 
