@@ -57,7 +57,7 @@ hal::Result<Mode> timed(const firmware::Board& board, const sim::Scene& scene, s
 
 hal::Result<Line> line_of(const std::string& board_folder, const std::string& file) {
   const firmware::Board board = TRY(firmware::load_board(board_folder));
-  const sim::Scene scene = TRY(firmware::choose_scene(board, {file, 1, std::nullopt}));
+  const sim::Scene scene = TRY(firmware::choose_scene(board, {file, 0, std::nullopt}));
   Line line{board.name, scene.name, scene.still(), {}, {}, {}, 0};
   int ignored = 0;
   line.everything = TRY(timed(board, scene, sim::PlanMode::everything, ignored));
