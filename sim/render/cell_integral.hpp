@@ -52,7 +52,7 @@ class CellIntegral {
     if (there == 0.0) return Decided::nothing;
     const double radius = map_.radius(cell);
     for (std::size_t k = 0; k < count;) {
-      const double margin = constraints_[k].margin(d);
+      const double margin = bound_of(constraints_[k], cell, d, radius);
       if (margin <= -radius) return Decided::nothing;
       if (margin >= radius) {
         std::swap(constraints_[k], constraints_[--count]);
@@ -61,6 +61,14 @@ class CellIntegral {
       }
     }
     return count == 0 && there == 1.0 ? Decided::all : Decided::some;
+  }
+
+  [[nodiscard]] double bound_of(const Constraint& constraint, const Cell& cell, const hal::Vec3& d,
+                                double radius) const {
+    if constexpr (Map::hides_itself) {
+      if (constraint.kind == Constraint::Kind::not_by_itself) return radius * map_.shown(cell);
+    }
+    return constraint.margin(d);
   }
 
   [[nodiscard]] double tile(std::size_t levels_left, int row, int col, std::size_t count) {
@@ -181,14 +189,14 @@ class CellIntegral {
     const bool small = most <= 2e-3 * tolerance_ || depth >= 40;
     if (map_.there(cell) != 1.0) {
       if (!small) return false;
-      light = margin_at(cell.x, cell.y, count) > 0.0 ? value * area * middle_weight : 0.0;
+      light = margin_at(cell, cell.x, cell.y, count) > 0.0 ? value * area * middle_weight : 0.0;
       return true;
     }
     const double hw = 0.5 * cell.width, hh = 0.5 * cell.height;
     const CornerMargins margins{
-        {margin_at(cell.x - hw, cell.y - hh, count), margin_at(cell.x + hw, cell.y - hh, count),
-         margin_at(cell.x + hw, cell.y + hh, count), margin_at(cell.x - hw, cell.y + hh, count)},
-        margin_at(cell.x, cell.y, count)};
+        {margin_at(cell, cell.x - hw, cell.y - hh, count), margin_at(cell, cell.x + hw, cell.y - hh, count),
+         margin_at(cell, cell.x + hw, cell.y + hh, count), margin_at(cell, cell.x - hw, cell.y + hh, count)},
+        margin_at(cell, cell.x, cell.y, count)};
     const bool single = count == 1 && constraints_[0].smooth();
     const double bend = margins.bend();
     if (!small) {
@@ -207,7 +215,7 @@ class CellIntegral {
     }
     const bool straight = small || (Map::flat && count == 1 && constraints_[0].linear());
     const CoveredPart covered =
-        covered_part(cell, margins, straight, [&](double x, double y) { return margin_at(x, y, count); });
+        covered_part(cell, margins, straight, [&](double x, double y) { return margin_at(cell, x, y, count); });
     if (!covered.known && !small) return false;
     light = covered.known ? value * weighed(cell, covered, middle_weight) : 0.5 * value * area * middle_weight;
     return true;
@@ -230,10 +238,18 @@ class CellIntegral {
     return covered.area * (map_.weight(covered.x, covered.y, map_.at(covered.x, covered.y)) + bent);
   }
 
-  [[nodiscard]] double margin_at(double x, double y, std::size_t count) const {
+  [[nodiscard]] double margin_at(const Cell& cell, double x, double y, std::size_t count) const {
     const hal::Vec3 d = map_.at(x, y);
     double least = std::numeric_limits<double>::max();
-    for (std::size_t k = 0; k < count; ++k) least = std::min(least, constraints_[k].margin(d));
+    for (std::size_t k = 0; k < count; ++k) {
+      if constexpr (Map::hides_itself) {
+        if (constraints_[k].kind == Constraint::Kind::not_by_itself) {
+          least = std::min(least, map_.clearance(cell, x, y));
+          continue;
+        }
+      }
+      least = std::min(least, constraints_[k].margin(d));
+    }
     return least;
   }
 

@@ -49,7 +49,7 @@ struct BallShadow {
 };
 
 struct Constraint {
-  enum class Kind { half_space, cone, rectangle, not_rectangle, ball, not_ball };
+  enum class Kind { half_space, cone, rectangle, not_rectangle, ball, not_ball, not_by_itself };
   Kind kind = Kind::half_space;
   union {
     HalfSpace half_space;
@@ -59,6 +59,12 @@ struct Constraint {
   };
 
   Constraint() noexcept : half_space{} {}
+  /// Of a relief: the point is not hidden by the relief itself, which is the surface's to say.
+  [[nodiscard]] static Constraint not_hidden_by_itself() noexcept {
+    Constraint constraint;
+    constraint.kind = Kind::not_by_itself;
+    return constraint;
+  }
   explicit Constraint(const HalfSpace& h) noexcept : half_space(h) {}
   explicit Constraint(const WithinCone& c) noexcept : kind(Kind::cone), cone(c) {}
   Constraint(const RectangleShadow& r, bool hidden) noexcept
@@ -79,11 +85,15 @@ struct Constraint {
         return ball.margin(d);
       case Kind::not_ball:
         return -ball.margin(d);
+      case Kind::not_by_itself:
+        return 0.0;
     }
     return 0.0;
   }
-  /// Its edge has no corner.
-  [[nodiscard]] bool smooth() const noexcept { return kind == Kind::half_space || kind == Kind::cone; }
+  /// Its edge has no corner, or few.
+  [[nodiscard]] bool smooth() const noexcept {
+    return kind == Kind::half_space || kind == Kind::cone || kind == Kind::not_by_itself;
+  }
   /// Its margin is linear in d.
   [[nodiscard]] bool linear() const noexcept { return kind == Kind::half_space; }
 };

@@ -5,14 +5,9 @@
 #include <limits>
 
 #include "sim/render/placed_surface.hpp"
+#include "sim/render/relief_heights.hpp"
 
 namespace compueye::sim {
-
-/// A rectangle of a surface's picture: x to its right, y up, mm from its centre.
-struct Cell {
-  double x = 0.0, y = 0.0;  ///< its middle
-  double width = 0.0, height = 0.0;
-};
 
 /// How much a point of a surface counts for one ommatidium: the piece of the object plane that it covers as seen from
 /// the apex, times cos^obliquity of the ray's angle. With d from the apex to the point, Z the object plane's z -
@@ -34,6 +29,7 @@ struct RayWeight {
 class PlaneMap {
  public:
   static constexpr bool flat = true;  ///< what is linear in space is linear in the picture
+  static constexpr bool hides_itself = false;
 
   PlaneMap(const PlacedSurface& surface, const hal::Vec3& apex, const RayWeight& weight)
       : centre_(surface.centre - apex),
@@ -74,6 +70,7 @@ class PlaneMap {
 class BallMap {
  public:
   static constexpr bool flat = false;
+  static constexpr bool hides_itself = false;  // HalfSpace says what is turned away
 
   BallMap(const PlacedSurface& surface, const hal::Vec3& apex, const RayWeight& weight)
       : centre_(surface.centre - apex),
@@ -126,6 +123,74 @@ class BallMap {
 
   hal::Vec3 centre_, right_, up_, away_;
   double radius_;
+  RayWeight weight_;
+};
+
+/// A plane whose points stand out.
+class ReliefMap {
+ public:
+  static constexpr bool flat = false;
+  static constexpr bool hides_itself = true;
+
+  ReliefMap(const PlacedSurface& surface, const ReliefHeights& heights, const hal::Vec3& apex, const RayWeight& weight)
+      : heights_(heights),
+        centre_(surface.centre - apex),
+        right_(surface.right),
+        up_(surface.up),
+        away_(surface.away),
+        apex_{-dot(centre_, right_), -dot(centre_, up_), dot(centre_, away_)},
+        slope_(std::hypot(right_.z, up_.z)),
+        weight_(weight) {}
+
+  [[nodiscard]] bool seen() const noexcept { return true; }
+  [[nodiscard]] bool even() const noexcept { return false; }
+  [[nodiscard]] hal::Vec3 at(double x, double y) const noexcept {
+    return centre_ + x * right_ + y * up_ - heights_.patch(heights_.pixel_at(x, y), x, y).height * away_;
+  }
+  [[nodiscard]] double weight(double x, double y, const hal::Vec3& d) const noexcept {
+    const ReliefHeights::Patch patch = heights_.patch(heights_.pixel_at(x, y), x, y);
+    return weight_(d, dot(away_ + patch.slope_x * right_ + patch.slope_y * up_, d));
+  }
+  [[nodiscard]] double most_weight(const Cell& cell, const hal::Vec3& d) const noexcept {
+    const ReliefHeights::Range range = heights_.range(cell);
+    const double steep = (range.hi - range.lo) / std::min(cell.width, cell.height);
+    return weight_(d, std::fabs(dot(away_, d)) + steep * length(d));
+  }
+  [[nodiscard]] double radius(const Cell& cell) const noexcept {
+    const ReliefHeights::Range range = heights_.range(cell);
+    return std::hypot(0.5 * std::hypot(cell.width, cell.height), range.hi - range.lo);
+  }
+  /// Nought where the heights are not level and the cell is larger than a pixel: there is no smooth weight then.
+  [[nodiscard]] double scale_mm(const Cell& cell, const hal::Vec3& d) const noexcept {
+    const ReliefHeights::Range range = heights_.range(cell);
+    const double rise = range.hi - range.lo, size = std::hypot(cell.width, cell.height);
+    if (rise > 0.0 && !heights_.within_pixel(cell)) return 0.0;
+    const double steep = slope_ + rise / size + (weight_.obliquity != 0.0 ? 1.0 : 0.0);
+    return steep > 0.0 ? std::max(d.z, 0.0) / steep : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] double there(const Cell& /*cell*/) const noexcept { return 1.0; }
+
+  /// Positive where the relief itself does not hide the point; `cell` is the pixel, or the part of it, that holds it.
+  [[nodiscard]] double clearance(const Cell& cell, double x, double y) const noexcept {
+    return heights_.clearance(heights_.pixel_at(cell.x, cell.y), x, y, apex_);
+  }
+  /// 1: no point of the cell is hidden, -1: all are, 0: undecided. Within a pixel five points speak for all.
+  [[nodiscard]] int shown(const Cell& cell) const noexcept {
+    if (heights_.clear(cell, apex_)) return 1;
+    if (!heights_.within_pixel(cell)) return 0;
+    int clear = clearance(cell, cell.x, cell.y) > 0.0 ? 1 : 0;
+    for (const double sx : {-0.5, 0.5}) {
+      for (const double sy : {-0.5, 0.5}) {
+        clear += clearance(cell, cell.x + sx * cell.width, cell.y + sy * cell.height) > 0.0 ? 1 : 0;
+      }
+    }
+    return clear == 5 ? 1 : (clear == 0 ? -1 : 0);
+  }
+
+ private:
+  const ReliefHeights& heights_;
+  hal::Vec3 centre_, right_, up_, away_, apex_;
+  double slope_;
   RayWeight weight_;
 };
 

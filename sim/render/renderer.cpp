@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@ using hal::Result;
 struct Rendered {
   const Surface* surface = nullptr;
   PictureSums sums;
+  std::optional<ReliefHeights> heights;
   PlacedSurface place, before;  ///< now, and at the last call
   bool moved = true;
   std::vector<double> seen, hidden;  ///< M
@@ -80,9 +82,24 @@ hal::Image grey(const Surface& surface, const RenderSettings& settings) {
   return sum;
 }
 
+/// Each pixel `down` x `across` times.
+hal::Image repeated(const hal::Image& picture, int down, int across) {
+  hal::Image finer(picture.rows * down, picture.cols * across);
+  for (int row = 0; row < finer.rows; ++row) {
+    for (int col = 0; col < finer.cols; ++col) finer.at(row, col) = picture.at(row / down, col / across);
+  }
+  return finer;
+}
+
+/// A relief's heights change from pixel to pixel, so its picture is at least as fine as they are. Its edges stay sharp.
 PictureSums sums_of(const Surface& surface, const PlacedSurface& place, const RenderSettings& settings, bool tiles) {
   hal::Image picture = grey(surface, settings);
   double width = 2.0 * place.half_width, height = 2.0 * place.half_height;
+  if (place.shape == Shape::relief) {
+    const auto times = [](int wanted, int have) { return std::max(1, (wanted + have - 1) / have); };
+    return {repeated(picture, times(surface.heights.rows, picture.rows), times(surface.heights.cols, picture.cols)),
+            width, height, tiles};
+  }
   if (surface.shines && settings.pixel_edge_blur > 0.0) {
     width *= (picture.cols + 2.0) / picture.cols;
     height *= (picture.rows + 2.0) / picture.rows;
@@ -150,13 +167,17 @@ struct Renderer::Parts {
     }
   }
 
+  [[nodiscard]] Sight sight(const Rendered& one) const {
+    return {one.sums, one.heights ? &*one.heights : nullptr, one.place, one.heights && settings.occlusion};
+  }
+
   void see(Rendered& one) {
     for (std::size_t m = 0; m < one.seen.size(); ++m) {
       one.seen[m] = 0.0;
       if (!one.place.present) continue;
       const Gaze here = gaze(m);
       for (const ConeOfLight& cone : optics.ommatidia[m].cones) {
-        if (cone.weight != 0.0) one.seen[m] += cone.weight * light_seen(one.sums, one.place, here, cone, constraints);
+        if (cone.weight != 0.0) one.seen[m] += cone.weight * light_seen(sight(one), here, cone, constraints);
       }
     }
   }
@@ -193,8 +214,7 @@ struct Renderer::Parts {
     for (const ConeOfLight& cone : one.cones) {
       if (cone.weight == 0.0) continue;
       for (std::size_t k = 0; k < shadows.size(); ++k) {
-        sum += cone.weight *
-               light_hidden(surfaces[behind].sums, surfaces[behind].place, here, cone, shadows, k, constraints);
+        sum += cone.weight * light_hidden(sight(surfaces[behind]), here, cone, shadows, k, constraints);
       }
     }
     return sum;
@@ -247,7 +267,10 @@ Result<Renderer> Renderer::create(const hal::EyeGeometry& eye, const hal::Object
                       " mm into the eye, expected all of it before the lens tip");
     }
     const bool tiles = settings.occlusion || settings.true_depth || parts->optics.obliquity != 0.0;
-    Rendered one{&surface, sums_of(surface, place, settings, tiles), {}, {}, true, {}, {}};
+    Rendered one{&surface, sums_of(surface, place, settings, tiles), {}, {}, {}, true, {}, {}};
+    if (place.shape == Shape::relief) {
+      one.heights.emplace(surface.heights, one.sums.rows(), one.sums.cols(), surface.width_mm, surface.height_mm);
+    }
     one.seen.resize(parts->optics.ommatidia.size());
     one.hidden.resize(parts->optics.ommatidia.size());
     parts->surfaces.push_back(std::move(one));

@@ -18,6 +18,12 @@ namespace compueye::sim {
 /// within the cone, each ray weighing as the piece of the object plane that it meets (Lee et al., "COMPU-EYE", Optics
 /// Express 24 (2016)), times cos^obliquity of its angle from z; unit: one pixel of the object plane at white. Radiance
 /// does not change along a ray: what is white and fills the cone gives the same signal at any distance and tilt.
+///
+/// The back of a surface is dark, and hides as the front does; so is the hidden half of a ball. Planes and balls may
+/// cut through one another. A relief hides parts of itself (its walls do not shine, and its heights are taken at the
+/// corners of its picture's pixels), and casts on others the shadow of its rectangle. Surfaces that shine have blurred
+/// pixel edges (edge_blur.hpp says how well). The tolerance is shared out over single cells by estimates that are
+/// tested, not by a proof: see cell_integral.hpp.
 class Renderer {
  public:
   /// `scene` must outlive it. Errors: those of validate(scene), and out_of_range or unsupported with the surface's

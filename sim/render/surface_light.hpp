@@ -19,14 +19,21 @@ struct Gaze {
   double tolerance = 1e-3;  ///< of each result
 };
 
+/// What is looked at: a surface's picture, for a relief its heights, and where it stands.
+struct Sight {
+  const PictureSums& picture;
+  const ReliefHeights* heights = nullptr;
+  const PlacedSurface& place;
+  bool hides_itself = false;  ///< a relief, where occlusion counts
+};
+
 /// Light of a surface within one cone, nothing being in front of it, in pixels of the object plane. `constraints` is
 /// room to work in.
-[[nodiscard]] double light_seen(const PictureSums& picture, const PlacedSurface& place, const Gaze& gaze,
-                                const ConeOfLight& cone, std::vector<Constraint>& constraints);
+[[nodiscard]] double light_seen(const Sight& sight, const Gaze& gaze, const ConeOfLight& cone,
+                                std::vector<Constraint>& constraints);
 
 /// That part of it which `shadows[k]` hides and none before it.
-[[nodiscard]] double light_hidden(const PictureSums& picture, const PlacedSurface& place, const Gaze& gaze,
-                                  const ConeOfLight& cone, std::span<const Shadow> shadows, std::size_t k,
-                                  std::vector<Constraint>& constraints);
+[[nodiscard]] double light_hidden(const Sight& sight, const Gaze& gaze, const ConeOfLight& cone,
+                                  std::span<const Shadow> shadows, std::size_t k, std::vector<Constraint>& constraints);
 
 }  // namespace compueye::sim

@@ -80,9 +80,9 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 
 /// Largest difference from traced rays as a share of the brightest signal.
 double off_traced(const Eye& e, const Scene& scene, const std::vector<double>& signals, bool occlusion,
-                  double obliquity = 0.0) {
+                  double obliquity = 0.0, int rays_across = 700) {
   const OpticsAsBuilt optics = OpticsAsBuilt::drawn(e.eye);
-  const test::TracedRays rays(e.eye, e.object, scene, occlusion, test::sanitized ? 200 : 700);
+  const test::TracedRays rays(e.eye, e.object, scene, occlusion, test::sanitized ? 200 : rays_across);
   double largest = 0.0;
   for (std::size_t m = 0; m < signals.size(); ++m) {
     largest = std::max(largest, std::fabs(signals[m] - rays.signal(optics.ommatidia[m], obliquity)));
@@ -161,5 +161,33 @@ TEST_CASE("rays count less by the power of the cosine of their angle") {
     const std::vector<double> signals = rendered(e, scene, at_depth(false), 3.0);
     CHECK(off_traced(e, scene, signals, false, 3.0) < traced_share);
     if (!test::sanitized) CHECK(largest_difference(signals, rendered(e, scene, at_depth(false, 3e-6), 3.0)) < 3e-3);
+  }
+}
+
+// The picture's pixels are half as wide as the heights', so that both take the relief as the same bilinear patches.
+TEST_CASE("reliefs agree with traced rays, also where they hide a part of themselves") {
+  const Eye e = eye_of(50.0);
+  for (const double highest_mm : {0.5, 4.0}) {
+    CAPTURE(highest_mm);
+    Scene scene;
+    scene.surfaces.push_back(sheet(16, 20.0, 14.0, 6));
+    Surface& relief = scene.surfaces[0];
+    relief.shape = Shape::relief;
+    relief.heights = random_picture(8, 8, 9);
+    for (float& height : relief.heights.pixels) height *= static_cast<float>(highest_mm);
+    relief.pose.centre_mm = {1.0, 0.5, 0.0};
+    relief.pose.tilt_rad = 10.0 * deg;
+    const std::vector<double> signals = rendered(e, scene, at_depth(true));
+    CHECK(off_traced(e, scene, signals, true, 0.0, 150) < 2.0 * traced_share);
+    const double unhidden = largest_difference(signals, rendered(e, scene, at_depth(false)));
+    CHECK((unhidden > 0.1) == (highest_mm > 1.0));
+    if (!test::sanitized) CHECK(largest_difference(signals, rendered(e, scene, at_depth(true, 3e-4))) < 6e-3);
+    relief.heights = hal::Image(1, 1, 2.0F);
+    relief.pose.tilt_rad = 0.0;
+    const std::vector<double> level = rendered(e, scene, at_depth(true));
+    relief.shape = Shape::plane;
+    relief.heights = {};
+    relief.distance_mm = 12.0;
+    CHECK(largest_difference(level, rendered(e, scene, at_depth(true))) < 6e-3);
   }
 }

@@ -141,16 +141,19 @@ class TracedRays {
       if (x < 0.0 || x > 1.0 || y < 0.0 || y > 1.0) return 1.0;
       return -dot(p, n) - height(surface.heights, x, y);
     };
-    constexpr int steps = 40;
+    constexpr int steps = 600;
     for (int k = 0; k < steps; ++k) {
       double from = t0 + (t1 - t0) * k / steps, to = t0 + (t1 - t0) * (k + 1) / steps;
-      if (above(to) > 0.0) continue;
+      if (above(to) > 0.0 || !(above(from) > 0.0)) continue;
       for (int halving = 0; halving < 30; ++halving) {
         const double middle = 0.5 * (from + to);
         (above(middle) > 0.0 ? from : to) = middle;
       }
       const hal::Vec3 p{a.x + to * d.x, a.y + to * d.y, a.z + to * d.z};
       const double value = picture(surface, dot(p, r), dot(p, u));
+      // A ray that comes in under the relief's edge meets nothing there.
+      const double x = std::fabs(dot(p, r)) / surface.width_mm, y = std::fabs(dot(p, u)) / surface.height_mm;
+      if (std::fmax(x, y) > 0.5 - 1e-6) continue;
       return {to, value > 0.0 ? value : 0.0, value >= 0.0};
     }
     return {};
