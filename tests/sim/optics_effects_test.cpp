@@ -178,7 +178,8 @@ TEST_CASE("dust dims half of the view of its share of ommatidia, within the view
   CHECK_FALSE(rig.called("dust").empty());
   rig.board.build.dust_loss = 0.4;
   int dusty = 0;
-  for (const auto& ommatidium : rig.workings({"dust"}).optics.ommatidia) {
+  const sim::OpticsAsBuilt built = rig.workings({"dust"}).optics;
+  for (const auto& ommatidium : built.ommatidia) {
     if (ommatidium.cones.size() == 1) continue;
     REQUIRE(ommatidium.cones.size() == 2);
     ++dusty;

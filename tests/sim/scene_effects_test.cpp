@@ -119,7 +119,7 @@ TEST_CASE("a display moves in steps of its refresh, paper does not") {
   rig.scene.surfaces[0].motion.velocity_mm_per_s = {4.0, 0.0, 0.0};
   CHECK(rig.called("display_refresh").empty());
   rig.scene.surfaces[0].shines = true;
-  const sim::Surface& stepping = rig.workings({"display_refresh"}).scene.surfaces[0];
+  const sim::Surface stepping = rig.workings({"display_refresh"}).scene.surfaces[0];
   CHECK(stepping.motion.moved(stepping.pose, 0.37).centre_mm.x == doctest::Approx(4.0 * 0.3));
   CHECK(stepping.motion.moved(stepping.pose, 0.09).centre_mm.x == 0.0);
   // Late by half a step in the mean; the rms of what lies between 0 and 0.4 mm.
