@@ -129,6 +129,12 @@ TEST_CASE("lengths are scaled with the plane that a file is for") {
   CHECK(s.motion.path[1].offset_mm.y == 2.5);
   CHECK(s.motion.path[1].offset_mm.z == 12.0);
   CHECK(s.motion.path[1].t_s == 1.0);
+  const sim::Surface relief =
+      good(
+          "[scene]\nfor_plane_mm = [17, 15]\n[[surface]]\npicture = \"white\"\nshape = \"relief\"\n"
+          "heights = \"white\"\nresolution = [2, 2]\nrelief_mm = 1.5\n")
+          .surfaces[0];
+  CHECK(relief.heights.at(0, 0) == 3.0F);
 }
 
 TEST_CASE("--scene-distance moves what says no distance of its own") {
