@@ -112,7 +112,7 @@ class CellIntegral {
     const double flux = map_.weight(cell.x, cell.y, d) * pixel_area();
     const double once = (nodes + 1.0) * (nodes + 2.0) * power;
     const double twice = (2.0 * nodes + 1.0) * (2.0 * nodes + 2.0) * power * power;
-    return flux * (uneven * once + total * twice) <= 0.1 * tolerance_;
+    return flux * (uneven * once + total * twice) <= 0.4 * tolerance_;
   }
 
   [[nodiscard]] bool negligible(const Cell& cell, const hal::Vec3& d, double total) const {
@@ -201,7 +201,7 @@ class CellIntegral {
     const double bend = margins.bend();
     if (!small) {
       if (!single && !(bend < 1e-9)) return false;
-      if (!(most * bend * bend <= 2e-3 * tolerance_)) return false;
+      if (!(most * bend * bend <= 8e-3 * tolerance_)) return false;
       const double ratio = map_.even() ? 0.0 : map_.radius(cell) / map_.scale_mm(cell, d);
       if (!(most * ratio * ratio * ratio <= 2e-3 * tolerance_)) return false;
     }
