@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "hal/build_settings.hpp"
@@ -25,8 +26,8 @@ struct EyeToSimulate {
   [[nodiscard]] double integration_s() const noexcept;
 };
 
-/// What a cheap look at the scene tells: the drawn eye in front of it as it stands at its start, flat on the object
-/// plane, to a few per cent. In LSB above the dark level.
+/// What a cheap look at the scene tells: the drawn eye in front of it, surfaces where they are and before each other,
+/// at that of several times at which it is brightest, to a few per cent. In LSB above the dark level.
 struct Preview {
   std::vector<double> levels;    ///< M
   double mean = 0.0, rms = 0.0;  ///< over the channels
@@ -37,6 +38,9 @@ struct Preview {
   /// d level / d (mm that the scene moves) in x and y: rms and largest over the channels, the larger of the two.
   double gradient_rms = 0.0, gradient_largest = 0.0;
   double laplacian_rms = 0.0;  ///< of the second derivative by mm, the larger of x and y
+  /// Rms over channels and times of what changes when surfaces lie flat on the object plane, do not hide each other,
+  /// stand still. Absent: nobody looked, since nothing is like that.
+  std::optional<double> flat_change, shine_through_change, standstill_change;
 };
 
 /// All that an effect may ask when it says whether it is called for, how large it is and what it costs.

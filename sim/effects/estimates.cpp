@@ -28,6 +28,10 @@ double steepness_lsb_per_mm(const Circumstances& c) noexcept {
   return std::numbers::sqrt2 * c.preview.gradient_rms;
 }
 
+double looked_bound(double change_lsb) noexcept {
+  return 2.0 * change_lsb;
+}
+
 double range_mm(const Circumstances& c) noexcept {
   const hal::EyeGeometry& eye = c.board.eye;
   return std::max(c.board.object.z_mm(eye) - eye.apex(eye.rows / 2, eye.columns / 2).z, 1e-9);

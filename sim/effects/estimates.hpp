@@ -20,6 +20,9 @@ inline constexpr double margin = 1.25;
 /// two directions may both be as steep.
 [[nodiscard]] double steepness_lsb_per_mm(const Circumstances& c) noexcept;
 
+/// Of what a look at several times found: twice that, since it looked at other times than a frame does.
+[[nodiscard]] double looked_bound(double change_lsb) noexcept;
+
 /// From an apex to the object plane, about.
 [[nodiscard]] double range_mm(const Circumstances& c) noexcept;
 

@@ -16,6 +16,7 @@ std::string calls_for(const Circumstances& c) {
 // on, what comes into a look has nothing to do with what left it: the change is at most that of a look full of the
 // brightest there is, about.
 double bound(const Circumstances& c) {
+  if (c.preview.standstill_change) return looked_bound(*c.preview.standstill_change);
   const double way = speed_mm_per_s(c) * c.scene.seconds_to_judge();
   const double along = margin * steepness_lsb_per_mm(c) * way;
   if (way < look_radius_mm(c) / 2.0) return along;

@@ -64,6 +64,7 @@ std::string calls_for(const Circumstances& c) {
 // level of each channel that looks at an overlap; of every channel where things move or stand in depth, and then it may
 // be what comes into the look.
 double bound(const Circumstances& c) {
+  if (c.preview.shine_through_change) return looked_bound(*c.preview.shine_through_change);
   const bool flat = all_lie_flat(c);
   const std::vector<Box> places = overlaps(c.scene);
   double squares = 0.0;

@@ -46,6 +46,7 @@ std::string calls_for(const Circumstances& c) {
 // quarter of the plane shows something that the flat look does not: about as bright as the levels are, or a good part
 // of a look full of the brightest.
 double bound(const Circumstances& c) {
+  if (c.preview.flat_change) return looked_bound(*c.preview.flat_change);
   const double depth = deepest_mm(c), range = range_mm(c);
   const double corner = std::hypot(c.board.object.width_mm, c.board.object.height_mm) / 2.0;
   const double moved = corner * depth / std::max(range - depth, 0.1 * range);

@@ -15,6 +15,15 @@ double noise_of(const Circumstances& c) noexcept {
   return std::sqrt(rounding_variance + read * read + shot_variance);
 }
 
+/// Two renderings of the same light differ by so many LSB rms at most: each keeps to .05 (simulation.cpp) with every
+/// surface, cone and instant, and is as white as noise.
+double rendered_anew(const Effect& effect) noexcept {
+  constexpr double lsb = 0.1;
+  const bool renders =
+      effect.group == EffectGroup::scene || effect.group == EffectGroup::optics || effect.group == EffectGroup::timing;
+  return renders ? lsb : 0.0;
+}
+
 Decision forced_to(Forced forced) noexcept {
   return forced == Forced::on ? Decision::forced_on : Decision::forced_off;
 }
@@ -117,6 +126,10 @@ Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensiti
   for (const Effect* effect : list) {
     PlannedEffect& planned = plan.effects.emplace_back(look_at(*effect, circumstances));
     planned.nmse = nmse_of(planned.bound_lsb, effect->error);
+    if (!planned.called_for_by.empty()) {
+      planned.bound_lsb += rendered_anew(*effect);
+      planned.nmse += nmse_of(rendered_anew(*effect), ErrorKind::white);
+    }
     if (planned.decision == Decision::forced_on || planned.decision == Decision::forced_off) continue;
     if (mode == PlanMode::everything) planned.decision = Decision::on;
     if (mode == PlanMode::nothing && planned.decision == Decision::on) planned.decision = Decision::left_out;

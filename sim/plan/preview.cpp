@@ -45,18 +45,28 @@ Scene coarse_scene(const EyeToSimulate& board, const Scene& scene) {
   return coarse;
 }
 
-hal::Result<Levels> levels_of(const EyeToSimulate& board, Scene scene, double right_mm, double up_mm) {
+/// How a look is rendered, and when.
+struct Glance {
+  double t_s = 0.0;
+  bool depth = true, occlusion = true;
+  double right_mm = 0.0, up_mm = 0.0;
+};
+
+hal::Result<Levels> levels_of(const EyeToSimulate& board, Scene scene, const Glance& glance) {
   for (Surface& surface : scene.surfaces) {
-    surface.pose.centre_mm.x += right_mm;
-    surface.pose.centre_mm.y += up_mm;
+    surface.pose.centre_mm.x += glance.right_mm;
+    surface.pose.centre_mm.y += glance.up_mm;
   }
   RenderSettings settings;
   const double white = board.eye.acceptance_rad * board.object.distance_mm /
                        std::sqrt(board.object.pixel_width_mm() * board.object.pixel_height_mm());
   settings.tolerance = 1e-3 * std::max(white * white, 1e-6);
+  settings.motion = true;
+  settings.true_depth = glance.depth;
+  settings.occlusion = glance.occlusion && scene.surfaces.size() > 1;
   Renderer renderer = TRY(Renderer::create(board.eye, board.object, OpticsAsBuilt::drawn(board.eye), settings, scene));
   Levels levels(static_cast<std::size_t>(board.eye.ommatidia()));
-  renderer.render(0.0, levels);
+  renderer.render(glance.t_s, levels);
   for (double& level : levels) level /= board.sensor.lsb();
   return levels;
 }
@@ -96,11 +106,11 @@ void add_neighbours(const hal::EyeGeometry& eye, Preview& preview) {
 }
 
 /// By moving the scene to both sides.
-hal::Result<void> add_slopes(const EyeToSimulate& board, const Scene& scene, Preview& preview) {
+hal::Result<void> add_slopes(const EyeToSimulate& board, const Scene& scene, double t_s, Preview& preview) {
   const double step = look_mm(board) / 2.0;
   for (const auto& [right, up] : {std::pair{step, 0.0}, {0.0, step}}) {
-    const Levels after = TRY(levels_of(board, scene, right, up));
-    const Levels before = TRY(levels_of(board, scene, -right, -up));
+    const Levels after = TRY(levels_of(board, scene, {.t_s = t_s, .right_mm = right, .up_mm = up}));
+    const Levels before = TRY(levels_of(board, scene, {.t_s = t_s, .right_mm = -right, .up_mm = -up}));
     Levels slope(after.size()), bend(after.size());
     for (std::size_t m = 0; m < after.size(); ++m) {
       slope[m] = (after[m] - before[m]) / (2.0 * step);
@@ -113,19 +123,70 @@ hal::Result<void> add_slopes(const EyeToSimulate& board, const Scene& scene, Pre
   return {};
 }
 
+double rms_between(const Levels& a, const Levels& b) {
+  Levels difference(a.size());
+  for (std::size_t m = 0; m < a.size(); ++m) difference[m] = a[m] - b[m];
+  return rms(difference);
+}
+
+bool lies_on_the_plane(const Surface& surface, const hal::ObjectPlane& object) {
+  const double distance = object.distance_mm;
+  const bool straight = surface.pose.tilt_rad == 0.0 && surface.pose.lean_rad == 0.0 && surface.motion.still();
+  return surface.shape == Shape::plane && straight && surface.distance_mm.value_or(distance) == distance;
+}
+
+/// Times to look at: a still scene's beginning, else some of what is judged, none of them on its beat.
+std::vector<double> times_of(const Scene& scene) {
+  if (scene.still()) return {0.0};
+  std::vector<double> times{0.0};
+  for (const double share : {0.13, 0.37, 0.61, 0.89}) times.push_back(share * scene.seconds_to_judge());
+  return times;
+}
+
+/// Rms over the times of what each of depth, occlusion and motion changes.
+hal::Result<void> add_changes(const EyeToSimulate& board, const Scene& scene, const std::vector<double>& times,
+                              const std::vector<Levels>& looks, Preview& preview) {
+  const bool flat = std::all_of(scene.surfaces.begin(), scene.surfaces.end(),
+                                [&](const Surface& surface) { return lies_on_the_plane(surface, board.object); });
+  const bool alone = scene.surfaces.size() < 2;
+  double of_depth = 0.0, of_occlusion = 0.0, of_motion = 0.0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const auto count = static_cast<double>(times.size());
+    if (!flat) {
+      const Levels changed = TRY(levels_of(board, scene, {.t_s = times[k], .depth = false}));
+      of_depth += std::pow(rms_between(looks[k], changed), 2) / count;
+    }
+    if (!alone) {
+      const Levels changed = TRY(levels_of(board, scene, {.t_s = times[k], .occlusion = false}));
+      of_occlusion += std::pow(rms_between(looks[k], changed), 2) / count;
+    }
+    of_motion += std::pow(rms_between(looks[k], looks[0]), 2) / std::max(count - 1.0, 1.0);
+  }
+  if (!flat) preview.flat_change = std::sqrt(of_depth);
+  if (!alone) preview.shine_through_change = std::sqrt(of_occlusion);
+  if (!scene.still()) preview.standstill_change = std::sqrt(of_motion);
+  return {};
+}
+
 }  // namespace
 
 hal::Result<Preview> preview_of(const EyeToSimulate& board, const Scene& scene) {
   const Scene coarse = coarse_scene(board, scene);
+  const std::vector<double> times = times_of(coarse);
+  std::vector<Levels> looks;
+  for (const double t_s : times) looks.push_back(TRY(levels_of(board, coarse, {.t_s = t_s})));
+  const auto brightest =
+      std::max_element(looks.begin(), looks.end(), [](const Levels& a, const Levels& b) { return rms(a) < rms(b); });
   Preview preview;
-  preview.levels = TRY(levels_of(board, coarse, 0.0, 0.0));
+  preview.levels = *brightest;
   for (const double level : preview.levels) {
     preview.mean += level / static_cast<double>(preview.levels.size());
     preview.largest = std::max(preview.largest, level);
   }
   preview.rms = rms(preview.levels);
   add_neighbours(board.eye, preview);
-  TRY(add_slopes(board, coarse, preview));
+  TRY(add_slopes(board, coarse, times[static_cast<std::size_t>(brightest - looks.begin())], preview));
+  TRY(add_changes(board, coarse, times, looks, preview));
   return preview;
 }
 
