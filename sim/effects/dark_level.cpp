@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "sim/effects/effect_list.hpp"
 #include "sim/effects/estimates.hpp"
 #include "sim/effects/frame_step.hpp"
@@ -23,7 +25,12 @@ const Effect effect::dark_level{
       const double level = c.board.sensor.dark_level_lsb;
       return level > 0.0 ? "codes stand on " + figure(level) + " LSB" : "";
     },
-    .bound = [](const Circumstances& c) { return c.board.sensor.dark_level_lsb; },
+    .bound =
+        [](const Circumstances& c) {
+          // The converter's bow stretches it by its slope, 4 INL / full scale at most.
+          const double slope = 4.0 * std::fabs(c.board.detector.inl_lsb) / std::ldexp(1.0, c.board.sensor.bits);
+          return c.board.sensor.dark_level_lsb * (1.0 + slope + 1e-9);
+        },
     .cost = [](const Circumstances& c) { return step_cost(c, 0.5); },
     .apply = apply,
 };

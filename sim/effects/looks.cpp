@@ -94,7 +94,9 @@ double shifted_change_lsb(const Circumstances& c, std::span<const double> turned
     grown2 += level * level * grown * grown / channels;
   }
   const double typical2 = weight > 0.0 ? way2 / weight : plain_way2;
-  const double change = steepness_lsb_per_mm(c) * std::sqrt(typical2) + std::sqrt(grown2);
+  // Ways are longer on what stands behind the object plane, and pictures denser on what turns away from it.
+  const double uneven = c.preview.flat_change ? 2.0 : 1.0;
+  const double change = uneven * steepness_lsb_per_mm(c) * std::sqrt(typical2) + std::sqrt(grown2);
   return margin * std::min(change, 2.0 * c.preview.rms);
 }
 

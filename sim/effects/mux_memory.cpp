@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "sim/effects/effect_list.hpp"
 #include "sim/effects/estimates.hpp"
 #include "sim/effects/frame_step.hpp"
@@ -7,10 +9,13 @@ namespace {
 
 // The voltage that the converter reads is v_i = y_i + m (v_(i-1) - y_i), so v - y = sum over k >= 1 of m^k times the
 // step between channels i - k + 1 and i - k: rms at most m / (1 - m) that of the steps. First channels of a converter
-// have nothing before them, which the bound counts as if they had.
+// have nothing before them, which the bound counts as if they had. Steps are of the scene and of the photons, whose
+// noise differs from channel to channel.
 double bound(const Circumstances& c) {
-  const double memory = c.board.detector.mux_memory();
-  return margin * memory / (1.0 - memory) * c.preview.previous_rms;
+  const double memory = c.board.detector.mux_memory(), electrons = c.board.detector.electrons_per_lsb;
+  const double shot_variance = electrons > 0.0 ? c.preview.mean / electrons : 0.0;
+  const double step = std::sqrt(c.preview.previous_rms * c.preview.previous_rms + 2.0 * shot_variance);
+  return margin * memory / (1.0 - memory) * step;
 }
 
 void apply(const Circumstances& c, Workings& w) {

@@ -52,7 +52,13 @@ std::vector<Box> overlaps(const Scene& scene) {
   return found;
 }
 
+bool has_relief(const Scene& scene) noexcept {
+  return std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                     [](const Surface& surface) { return surface.shape == Shape::relief; });
+}
+
 std::string calls_for(const Circumstances& c) {
+  if (has_relief(c.scene)) return "a relief may hide parts of itself";
   if (c.scene.surfaces.size() < 2) return "";
   const std::string count = std::to_string(c.scene.surfaces.size()) + " surfaces";
   if (!all_lie_flat(c)) return count + " may come before each other";

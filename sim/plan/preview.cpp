@@ -45,6 +45,11 @@ Scene coarse_scene(const EyeToSimulate& board, const Scene& scene) {
   return coarse;
 }
 
+/// Several surfaces each other, a relief itself.
+bool may_hide(const Scene& scene) {
+  return scene.surfaces.size() > 1 || scene.surfaces.front().shape == Shape::relief;
+}
+
 /// How a look is rendered, and when.
 struct Glance {
   double t_s = 0.0;
@@ -63,7 +68,7 @@ hal::Result<Levels> levels_of(const EyeToSimulate& board, Scene scene, const Gla
   settings.tolerance = 1e-3 * std::max(white * white, 1e-6);
   settings.motion = true;
   settings.true_depth = glance.depth;
-  settings.occlusion = glance.occlusion && scene.surfaces.size() > 1;
+  settings.occlusion = glance.occlusion && may_hide(scene);
   Renderer renderer = TRY(Renderer::create(board.eye, board.object, OpticsAsBuilt::drawn(board.eye), settings, scene));
   Levels levels(static_cast<std::size_t>(board.eye.ommatidia()));
   renderer.render(glance.t_s, levels);
@@ -148,7 +153,7 @@ hal::Result<void> add_changes(const EyeToSimulate& board, const Scene& scene, co
                               const std::vector<Levels>& looks, Preview& preview) {
   const bool flat = std::all_of(scene.surfaces.begin(), scene.surfaces.end(),
                                 [&](const Surface& surface) { return lies_on_the_plane(surface, board.object); });
-  const bool alone = scene.surfaces.size() < 2;
+  const bool alone = !may_hide(scene);
   double of_depth = 0.0, of_occlusion = 0.0, of_motion = 0.0;
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto count = static_cast<double>(times.size());

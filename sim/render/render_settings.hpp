@@ -2,8 +2,8 @@
 
 namespace compueye::sim {
 
-/// Which of what a scene holds is rendered; all off, every surface lies flat and upright on the object plane with its
-/// own size in mm, later ones over earlier ones, as it stands at t = 0.
+/// Which of what a scene holds is rendered; all off, every surface lies flat on the object plane, rolled as it is, with
+/// its own size in mm, later ones over earlier ones, as it stands at t = 0.
 struct RenderSettings {
   bool true_depth = false;  ///< distances, tilts, spheres and reliefs as they are
   bool occlusion = false;   ///< what is nearer hides what is behind; off: light of all surfaces adds up

@@ -144,8 +144,9 @@ struct Renderer::Parts {
   [[nodiscard]] PlacedSurface flattened(const Surface& surface, const Pose& pose) const {
     PlacedSurface place;
     place.centre = {pose.centre_mm.x, pose.centre_mm.y, object_z};
-    place.right = {1.0, 0.0, 0.0};
-    place.up = {0.0, 1.0, 0.0};
+    const double c = std::cos(pose.roll_rad), s = std::sin(pose.roll_rad);
+    place.right = {c, s, 0.0};
+    place.up = {-s, c, 0.0};
     place.away = {0.0, 0.0, 1.0};
     place.half_width = surface.width_mm / 2.0;
     place.half_height = surface.shape == Shape::sphere ? place.half_width : surface.height_mm / 2.0;

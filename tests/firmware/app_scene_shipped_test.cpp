@@ -93,7 +93,7 @@ TEST_CASE("the scenes call for what their list says, and the still ones for noth
       {"sim-8x8", "behind-a-bar", {"off_plane", "occlusion", "motion", "motion_blur"}},
       {"sim-8x8", "two-depths", {"off_plane", "occlusion"}},
       {"sim-8x8", "ball", {"off_plane"}},
-      {"sim-8x8", "relief", {"off_plane"}},
+      {"sim-8x8", "relief", {"off_plane", "occlusion"}},
       {"sim-8x8-detector", "mains", {"mains_flicker"}},
       {"sim-8x8", "lamp-drift", {"light_falloff", "lamp_drift"}},
       {"sim-8x8", "colours", {"spectral_response"}},

@@ -28,10 +28,14 @@ using namespace compueye::firmware;
 
 namespace {
 
-/// Of every effect before each board; COMPUEYE_WHOLE_GRID looks before every scene.
-const int most_looks = std::getenv("COMPUEYE_WHOLE_GRID") != nullptr ? 1000 : test::sanitized ? 1 : 2;
+/// With COMPUEYE_WHOLE_GRID every effect is looked at before every scene and board, which takes ten minutes; else each
+/// effect once before each board, and a board before every third scene.
+const bool whole_grid = std::getenv("COMPUEYE_WHOLE_GRID") != nullptr;
 
-constexpr std::uint64_t frames = test::sanitized ? 2 : 5;
+/// Between two renderings of the same light, at most.
+constexpr double rendered_to_lsb = 0.3;
+
+constexpr std::uint64_t frames = test::sanitized ? 2 : 4;
 
 Board board_8x8() {
   return load_board(test::source_path("boards/sim-8x8")).value();
@@ -89,6 +93,15 @@ std::vector<std::string> scene_files() {
   return files;
 }
 
+/// Those that board number `board` is looked at before.
+std::vector<std::string> scene_files_for(std::size_t board) {
+  const auto all = scene_files();
+  if (whole_grid) return all;
+  std::vector<std::string> some;
+  for (std::size_t k = board % 3; k < all.size(); k += 3) some.push_back(all[k]);
+  return some;
+}
+
 using Eye = std::unique_ptr<sim::SimulatedEye>;
 
 std::vector<double> levels_of(sim::SimulatedEye& eye, std::uint64_t frame) {
@@ -112,6 +125,7 @@ class Grid {
   [[nodiscard]] Eye eye(const sim::Scene& scene, sim::PlanMode mode) {
     auto settings = simulated_eye_settings(board_, scene, 3);
     settings.plan = mode;
+    if (mode != sim::PlanMode::automatic) return sim::SimulatedEye::create(std::move(settings), clock_).value();
     return planned_eye(board_, std::move(settings), clock_, {}).value();
   }
 
@@ -158,21 +172,21 @@ class Grid {
   std::optional<ReadyEye> ready_;
 };
 
-/// What so many draws of white noise may be above its rms: four standard errors.
+/// What so many draws of noise, of the converter or of photons, may be above its rms: four standard errors.
 double drawn_share(const sim::Effect& effect, const Board& board) {
-  if (effect.error != sim::ErrorKind::white) return 1.0;
+  if (effect.error != sim::ErrorKind::white && board.detector.electrons_per_lsb == 0.0) return 1.0;
   return 1.0 + 4.0 / std::sqrt(2.0 * static_cast<double>(frames) * board.eye.ommatidia());
 }
 
 }  // namespace
 
 TEST_CASE("what is planned differs from everything by no more than the plan says, in LSB and in the picture") {
-  const auto files = scene_files();
-  CHECK(files.size() >= 12);
+  CHECK(scene_files().size() >= 12);
+  std::size_t number = 0;
   int left_out = 0;
   for (const Board& board : {board_8x8(), as_built(), dim(), wide()}) {
     Grid grid(board);
-    for (const std::string& file : files) {
+    for (const std::string& file : scene_files_for(number++)) {
       const std::string name = std::filesystem::path(file).stem();
       CAPTURE(board.name);
       CAPTURE(name);
@@ -192,7 +206,7 @@ TEST_CASE("what is planned differs from everything by no more than the plan says
 }
 
 TEST_CASE("no bound is less than the truth, nor more than ten times where an effect dominates") {
-  std::map<std::string, int> looked;  // twice at every effect before each board
+  std::map<std::string, int> looked;
   for (const Board& board : {board_8x8(), as_built(), dim(), wide()}) {
     Grid grid(board);
     for (const std::string& file : scene_files()) {
@@ -206,7 +220,7 @@ TEST_CASE("no bound is less than the truth, nor more than ten times where an eff
       for (const auto& each : plan.effects) largest = std::max(largest, each.bound_lsb);
       for (const auto& each : plan.effects) {
         const std::string effect(each.effect->name);
-        if (each.called_for_by.empty() || looked[board.name + effect]++ >= most_looks) continue;
+        if (each.called_for_by.empty() || (looked[board.name + effect]++ > 0 && !whole_grid)) continue;
         CAPTURE(effect);
         CAPTURE(each.called_for_by);
         if (!everything) everything = grid.eye(scene, sim::PlanMode::everything);
@@ -220,10 +234,11 @@ TEST_CASE("no bound is less than the truth, nor more than ten times where an eff
   }
 }
 
-TEST_CASE("what nothing calls for changes nothing: not a bit") {
+TEST_CASE("what nothing calls for changes nothing but how light is rendered to its tolerance") {
+  std::size_t number = 1;
   for (const Board& board : {board_8x8(), as_built(), dim()}) {
     Grid grid(board);
-    for (const std::string& file : scene_files()) {
+    for (const std::string& file : scene_files_for(number++)) {
       const std::string name = std::filesystem::path(file).stem();
       CAPTURE(board.name);
       CAPTURE(name);
@@ -233,7 +248,10 @@ TEST_CASE("what nothing calls for changes nothing: not a bit") {
         if (each.called_for_by.empty()) scene.effects[std::string(each.effect->name)] = sim::Forced::off;
       }
       const Eye called = grid.eye(scene, sim::PlanMode::everything);
-      for (std::uint64_t f = 0; f < 2; ++f) CHECK(levels_of(*everything, f) == levels_of(*called, f));
+      for (std::uint64_t f = 0; f < 2; ++f) {
+        const auto all = levels_of(*everything, f), some = levels_of(*called, f);
+        for (std::size_t m = 0; m < all.size(); ++m) CHECK(std::fabs(all[m] - some[m]) <= rendered_to_lsb);
+      }
     }
   }
 }

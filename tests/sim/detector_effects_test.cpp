@@ -64,7 +64,7 @@ TEST_CASE("the dark level is added and the bound is what is added") {
   CHECK(rig.called("dark_level").empty());
   rig.board.sensor.dark_level_lsb = 200.0;
   for (const double level : rig.played({"dark_level"})) CHECK(level == 210.0);
-  CHECK(rig.bound("dark_level") == 200.0);
+  CHECK(rig.bound("dark_level") == doctest::Approx(200.0));
 }
 
 TEST_CASE("dark current is charge over time and doubles every eight degrees") {

@@ -96,6 +96,14 @@ bool Program::computes() const {
   return over_ || ticks * 10 >= ::sysconf(_SC_CLK_TCK);
 }
 
+bool Program::stands() const {
+  std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
+  std::string line;
+  std::getline(file, line);
+  const std::size_t name_ends = line.rfind(')');
+  return over_ || (name_ends != std::string::npos && line.compare(name_ends, 3, ") T") == 0);
+}
+
 bool Program::heard() const {
   return over_ || signals_of(pid_, "ShdPnd:") == 0;
 }

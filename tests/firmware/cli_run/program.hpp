@@ -34,6 +34,8 @@ class Program {
   [[nodiscard]] bool computes() const;
   /// Whether every signal that was sent has been taken.
   [[nodiscard]] bool heard() const;
+  /// Whether it stands still until SIGCONT; one that comes before that is lost.
+  [[nodiscard]] bool stands() const;
   [[nodiscard]] Ended wait();
 
  private:

@@ -257,6 +257,7 @@ TEST_CASE("the cursor is given back by Ctrl-Z and by a second signal, and hidden
   shown.clear();
   program.signal(SIGTSTP);
   CHECK(comes_true(program, shows("\x1b[?25h")));
+  CHECK(comes_true(program, [&] { return program.stands(); }));
   shown.clear();
   program.signal(SIGCONT);
   CHECK(comes_true(program, shows("\x1b[?25l")));
