@@ -41,6 +41,9 @@ Scene coarse_scene(const EyeToSimulate& board, const Scene& scene) {
     for (hal::Image& band : surface.bands) {
       band = coarsened(band, surface.width_mm, surface.height_mm, look_mm(board));
     }
+    if (surface.shape == Shape::relief) {
+      surface.heights = coarsened(surface.heights, surface.width_mm, surface.height_mm, look_mm(board));
+    }
   }
   return coarse;
 }
