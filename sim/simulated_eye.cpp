@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "hal/try.hpp"
-#include "sim/effects/effect.hpp"
 
 namespace compueye::sim {
 namespace {
@@ -41,14 +40,10 @@ Result<std::unique_ptr<SimulatedEye>> SimulatedEye::create(SimulatedEyeSettings 
   for (const int channel : settings.board.sensor.dead) settings.faults.invalid_channels.push_back({channel, 0});
   TRY(check(settings));
   std::vector<Simulation> simulations;
-  for (Scene scene : settings.scenes) {
-    for (const std::string& effect : settings.effects_off) {
-      TRY(effect_named(effect));
-      scene.effects[effect] = Forced::off;
-    }
-    simulations.push_back(
-        TRY(Simulation::create(settings.board, std::move(scene), settings.seed, settings.sensitivity, settings.plan)));
+  for (const Scene& scene : settings.scenes) {
+    simulations.push_back(TRY(Simulation::create(settings.board, scene, settings.seed, settings.planning)));
   }
+  settings.planning.measure = nullptr;  // may look at what its caller owns
   std::sort(settings.faults.lost_frames.begin(), settings.faults.lost_frames.end());
   return std::unique_ptr<SimulatedEye>(new SimulatedEye(std::move(settings), std::move(simulations), clock));
 }

@@ -18,12 +18,10 @@
 namespace compueye::sim {
 
 struct SimulatedEyeSettings {
-  EyeToSimulate board;                                    ///< its dead channels are invalid in every frame
-  std::vector<Scene> scenes;                              ///< at least one; shown in turn, over and over
-  int frames_per_scene = 1;                               ///< >= 1
-  std::vector<std::string> effects_off;                   ///< names of effects to switch off, whatever the scenes say
-  Sensitivity sensitivity = Sensitivity::of_small_eye();  ///< by which effects are planned
-  PlanMode plan = PlanMode::automatic;
+  EyeToSimulate board;                       ///< its dead channels are invalid in every frame
+  std::vector<Scene> scenes;                 ///< at least one; shown in turn, over and over
+  int frames_per_scene = 1;                  ///< >= 1
+  Planning planning;                         ///< of every scene
   double frame_rate_hz = 0.0;                ///< 0: unpaced, a frame whenever one is read; else up to 1e6
   std::uint64_t seed = 0;                    ///< of every random draw
   int fifo_frames = 4;                       ///< frames the device keeps for a late reader, >= 1
@@ -45,7 +43,7 @@ struct SimulatedEyeSettings {
 class SimulatedEye final : public hal::SampleSource {
  public:
   /// Renders the first frame of every scene, so it may take seconds. `clock` must outlive the eye. Errors: those of
-  /// Simulation::create(); usage (no scene), out_of_range, not_found (an effect to switch off).
+  /// Simulation::create(); usage (no scene), out_of_range.
   [[nodiscard]] static hal::Result<std::unique_ptr<SimulatedEye>> create(SimulatedEyeSettings settings,
                                                                          hal::Clock& clock);
 

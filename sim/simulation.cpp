@@ -26,6 +26,20 @@ hal::Result<void> check(const EyeToSimulate& board) {
                    "is " + std::to_string(board.frame_rate_hz) + ", expected more than 0");
 }
 
+/// A scene that forces what there is not would be simulated without it in silence.
+hal::Result<void> check_forced(const Scene& scene) {
+  for (const auto& [effect, forced] : scene.effects) TRY(effect_named(effect));
+  return {};
+}
+
+hal::Result<Plan> plan_of(const Circumstances& circumstances, const Planning& planning) {
+  Plan plan = plan_effects(circumstances, Sensitivity::of_small_eye(), planning.mode);
+  const bool measured = planning.mode == PlanMode::automatic && planning.measure && plan.depends_on_sensitivity();
+  if (!measured) return plan;
+  const Sensitivity sensitivity = TRY(planning.measure(circumstances.scene));
+  return plan_effects(circumstances, sensitivity, planning.mode);
+}
+
 Workings begin(const EyeToSimulate& board, const Scene& scene, std::uint64_t seed) {
   Workings workings;
   workings.seed = seed;
@@ -97,6 +111,9 @@ struct Simulation::Parts {
     std::fill(stuck.begin(), stuck.end(), -1);
     FrameInWork work{frame, start_s(frame), levels, stuck};
     for (const auto& step : workings.steps) step->apply(work);
+    for (std::size_t m = 0; m < levels.size(); ++m) {
+      if (stuck[m] >= 0) levels[m] = std::min(stuck[m], board.sensor.largest_code());
+    }
   }
 
   /// True when at least one channel reaches the largest code.
@@ -105,7 +122,6 @@ struct Simulation::Parts {
     bool saturated = false;
     for (std::size_t m = 0; m < codes.size(); ++m) {
       codes[m] = static_cast<std::int32_t>(std::clamp(std::round(levels[m]), 0.0, static_cast<double>(largest)));
-      if (stuck[m] >= 0) codes[m] = std::min(stuck[m], largest);
       saturated = saturated || codes[m] == largest;
     }
     return saturated;
@@ -118,16 +134,17 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
 hal::Result<Simulation> Simulation::create(EyeToSimulate board, Scene scene, std::uint64_t seed,
-                                           const Sensitivity& sensitivity, PlanMode mode) {
+                                           const Planning& planning) {
   TRY(check(board));
   TRY(validate(scene));
+  TRY(check_forced(scene));
   auto parts = std::make_unique<Parts>();
   Parts& p = *parts;
   p.board = std::move(board);
   p.scene = std::move(scene);
   p.preview = TRY(preview_of(p.board, p.scene));
   const Circumstances circumstances{p.board, p.scene, p.preview};
-  p.plan = plan_effects(circumstances, sensitivity, mode);
+  p.plan = TRY(plan_of(circumstances, planning));
   p.workings = begin(p.board, p.scene, seed);
   for (const PlannedEffect& each : p.plan.effects) {
     if (each.on()) each.effect->apply(circumstances, p.workings);

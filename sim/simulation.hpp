@@ -13,10 +13,10 @@ namespace compueye::sim {
 /// frame number, same codes, whatever was asked for before.
 class Simulation {
  public:
-  /// Renders the first frame, so it may take seconds. Errors: those of the settings' parts.
+  /// Renders the first frame, so it may take seconds. Errors: those of the settings' parts and of what measures the
+  /// sensitivity; not_found (the scene forces an effect that there is not).
   [[nodiscard]] static hal::Result<Simulation> create(EyeToSimulate board, Scene scene, std::uint64_t seed,
-                                                      const Sensitivity& sensitivity,
-                                                      PlanMode mode = PlanMode::automatic);
+                                                      const Planning& planning = {});
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();

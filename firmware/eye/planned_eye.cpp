@@ -27,29 +27,22 @@ bool is_black(const hal::Image& truth) {
   return std::all_of(truth.pixels.begin(), truth.pixels.end(), [](float v) { return v == 0.0F; });
 }
 
-}  // namespace
-
-bool depends_on_sensitivity(const sim::Plan& plan) noexcept {
-  constexpr double plainly = 10.0;  // of the noise: no kind of error is borne so much better than noise
-  return std::any_of(plan.effects.begin(), plan.effects.end(), [&](const sim::PlannedEffect& e) {
-    const bool open = e.decision == sim::Decision::on || e.decision == sim::Decision::left_out;
-    return open && e.effect->error != sim::ErrorKind::white && e.bound_lsb <= plainly * plan.noise_lsb;
-  });
+Result<sim::Sensitivity> sensitivity_to(const Board& board, const sim::Scene& scene, const recon::Progress& progress) {
+  const hal::Image truth = TRY(sim::scene_truth(scene, board.object));
+  if (is_black(truth)) return sim::Sensitivity::of_small_eye();
+  const LivingResponse living = TRY(living_response(board, progress));
+  const ReadyEye ready = TRY(ReadyEye::make(board, living, board.cache(), progress));
+  return handed_over(
+      TRY(recon::measure_sensitivity(living.response, ready.reconstructor(), truth, board.noise_sigma(), progress)));
 }
+
+}  // namespace
 
 Result<std::unique_ptr<sim::SimulatedEye>> planned_eye(const Board& board, sim::SimulatedEyeSettings settings,
                                                        hal::Clock& clock, const recon::Progress& progress) {
-  auto eye = TRY(sim::SimulatedEye::create(settings, clock));
-  if (!depends_on_sensitivity(eye->plan(0))) return eye;
-  const hal::Image truth = TRY(sim::scene_truth(settings.scenes.front(), board.object));
-  if (is_black(truth)) return eye;
   const recon::Progress told =
       progress ? progress : recon::Progress([](std::string_view, double, double) { return true; });
-  const LivingResponse living = TRY(living_response(board, told));
-  const ReadyEye ready = TRY(ReadyEye::make(board, living, board.cache(), told));
-  const auto found =
-      TRY(recon::measure_sensitivity(living.response, ready.reconstructor(), truth, board.noise_sigma(), told));
-  settings.sensitivity = handed_over(found);
+  settings.planning.measure = [&](const sim::Scene& scene) { return sensitivity_to(board, scene, told); };
   return sim::SimulatedEye::create(std::move(settings), clock);
 }
 

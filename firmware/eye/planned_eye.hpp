@@ -18,7 +18,4 @@ namespace compueye::firmware {
                                                                           hal::Clock& clock,
                                                                           const recon::Progress& progress);
 
-/// Whether another sensitivity could decide otherwise.
-[[nodiscard]] bool depends_on_sensitivity(const sim::Plan& plan) noexcept;
-
 }  // namespace compueye::firmware

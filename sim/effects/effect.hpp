@@ -40,6 +40,7 @@ struct Effect {
   EffectGroup group = EffectGroup::scene;
   std::string_view model;  ///< one line: the formula and its source
   ErrorKind error = ErrorKind::white;
+  bool noise = false;  ///< draws anew in every frame: what an exact signal is without
   /// Why this scene before this board calls for it, in a few words with figures; empty: it does not, and leaving it
   /// out changes nothing at all.
   std::string (*calls_for)(const Circumstances&) = nullptr;

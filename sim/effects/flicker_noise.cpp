@@ -66,6 +66,7 @@ const Effect effect::flicker_noise{
     .group = EffectGroup::electronics,
     .model = "sum of 16 normal numbers held for 1, 2, 4 .. frames: 1/f over 1/2 .. 2^-16 of the frame rate",
     .error = ErrorKind::white,
+    .noise = true,
     .calls_for = [](const Circumstances& c) -> std::string {
       const double rms = c.board.detector.flicker_noise_lsb;
       return rms > 0.0 ? "1/f noise of " + figure(rms) + " LSB in 1000 frames" : "";

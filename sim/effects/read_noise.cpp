@@ -26,6 +26,7 @@ const Effect effect::read_noise{
     .group = EffectGroup::electronics,
     .model = "level + N(0, s)",
     .error = ErrorKind::white,
+    .noise = true,
     .calls_for = [](const Circumstances& c) -> std::string {
       const double rms = c.board.sensor.read_noise_lsb;
       return rms > 0.0 ? "the converter reads " + figure(rms) + " LSB of noise" : "";

@@ -46,6 +46,7 @@ const Effect effect::shot_noise{
     .group = EffectGroup::detector,
     .model = "Poisson(level e) / e, e electrons per LSB",
     .error = ErrorKind::white,
+    .noise = true,
     .calls_for = calls_for,
     .bound = bound,
     .cost = [](const Circumstances& c) { return step_cost(c, 80.0); },

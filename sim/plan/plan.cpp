@@ -77,9 +77,9 @@ std::string_view name(Decision decision) noexcept {
     case Decision::not_called:
       return "not called for";
     case Decision::forced_on:
-      return "on, as the scene says";
+      return "on, as asked";
     case Decision::forced_off:
-      return "off, as the scene says";
+      return "off, as asked";
   }
   return "";
 }
@@ -90,6 +90,14 @@ Sensitivity Sensitivity::of_small_eye() noexcept {
 
 const PlannedEffect& Plan::of(std::string_view effect) const {
   return *std::find_if(effects.begin(), effects.end(), [&](const auto& each) { return each.effect->name == effect; });
+}
+
+bool Plan::depends_on_sensitivity() const noexcept {
+  constexpr double plainly = 10.0;  // of the noise: no kind of error is borne so much better than noise
+  return std::any_of(effects.begin(), effects.end(), [&](const PlannedEffect& e) {
+    const bool open = e.decision == Decision::on || e.decision == Decision::left_out;
+    return open && e.effect->error != ErrorKind::white && e.bound_lsb <= plainly * noise_lsb;
+  });
 }
 
 bool Plan::leaves_nothing_out() const noexcept {

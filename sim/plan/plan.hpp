@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "hal/result.hpp"
 #include "sim/effects/effect.hpp"
 #include "sim/plan/sensitivity.hpp"
 
@@ -43,6 +45,9 @@ struct Plan {
   /// Of an effect of the list.
   [[nodiscard]] const PlannedEffect& of(std::string_view effect) const;
   [[nodiscard]] bool leaves_nothing_out() const noexcept;
+  /// Whether another sensitivity could decide otherwise: something is called for that is neither noise nor plainly too
+  /// large to be left out.
+  [[nodiscard]] bool depends_on_sensitivity() const noexcept;
 };
 
 /// Lines "effect NAME = DECISION; WHY; at most BOUND LSB": what has to be known of samples to trace a result.
@@ -52,6 +57,14 @@ struct Plan {
 inline constexpr double share_left_out = 0.1;
 
 enum class PlanMode { automatic, everything, nothing };
+
+/// How a simulation comes to its plan.
+struct Planning {
+  PlanMode mode = PlanMode::automatic;
+  /// Measures how much a reconstruction of this scene bears, which may take seconds: asked only where an automatic plan
+  /// depends on it. Empty: the figures of the paper's small eye serve.
+  std::function<hal::Result<Sensitivity>(const Scene&)> measure = {};
+};
 
 /// Leaves out the effects that save most time for their error, while what they add up to stays within the share; what
 /// the scene forces is as it says. `everything`: all there are, called for or not; `nothing`: none.

@@ -59,7 +59,7 @@ const std::vector<double>& signals_of(const EvaluationScene& scene, Motion motio
 /// In the dark, to be given signals.
 Result<sim::Simulation> sensor_alone(const Board& board, std::uint64_t seed) {
   auto eye = simulated_eye_settings(board, sim::scene_on(board.object, "dark", hal::Image(1, 1)), seed);
-  return sim::Simulation::create(std::move(eye.board), std::move(eye.scenes.front()), seed, eye.sensitivity);
+  return sim::Simulation::create(std::move(eye.board), std::move(eye.scenes.front()), seed);
 }
 
 }  // namespace

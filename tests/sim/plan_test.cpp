@@ -58,15 +58,16 @@ void nothing(const Circumstances&, Workings&) {}
 constexpr auto detector = EffectGroup::detector;
 using Kind = ErrorKind;
 
-constexpr Effect small{"small", detector, "", Kind::white, called, bound<200'000>, dear, nothing};
-constexpr Effect middle{"middle", detector, "", Kind::white, called, bound<250'000>, dear, nothing};
-constexpr Effect middle_cheap{"middle, cheap", detector, "", Kind::white, called, bound<250'000>, cheap, nothing};
-constexpr Effect large{"large", detector, "", Kind::white, called, bound<2'000'000>, dear, nothing};
-constexpr Effect shape{"shape", detector, "", Kind::row_shape, called, bound<200'000>, dear, nothing};
-constexpr Effect gain{"gain", detector, "", Kind::common_gain, called, bound<2'000'000>, dear, nothing};
-constexpr Effect unknown{"unknown", detector, "", Kind::white, called, no_bound, dear, nothing};
-constexpr Effect huge{"huge", detector, "", Kind::white, called, endless, dear, nothing};
-constexpr Effect absent{"absent", detector, "", Kind::white, not_called, bound<5'000'000>, dear, nothing};
+constexpr Effect small{"small", detector, "", Kind::white, false, called, bound<200'000>, dear, nothing};
+constexpr Effect middle{"middle", detector, "", Kind::white, false, called, bound<250'000>, dear, nothing};
+constexpr Effect middle_cheap{"middle, cheap", detector,       "",    Kind::white, false,
+                              called,          bound<250'000>, cheap, nothing};
+constexpr Effect large{"large", detector, "", Kind::white, false, called, bound<2'000'000>, dear, nothing};
+constexpr Effect shape{"shape", detector, "", Kind::row_shape, false, called, bound<200'000>, dear, nothing};
+constexpr Effect gain{"gain", detector, "", Kind::common_gain, false, called, bound<2'000'000>, dear, nothing};
+constexpr Effect unknown{"unknown", detector, "", Kind::white, false, called, no_bound, dear, nothing};
+constexpr Effect huge{"huge", detector, "", Kind::white, false, called, endless, dear, nothing};
+constexpr Effect absent{"absent", detector, "", Kind::white, false, not_called, bound<5'000'000>, dear, nothing};
 
 Decision decision_of(const Plan& plan, std::string_view effect) {
   return plan.of(effect).decision;

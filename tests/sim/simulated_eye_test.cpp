@@ -71,7 +71,7 @@ TEST_CASE("the eye describes itself") {
 TEST_CASE("without noise the codes are the rounded signals of the optics") {
   hal::VirtualClock clock;
   SimulatedEyeSettings settings = small_eye();
-  settings.effects_off = {"read_noise"};
+  settings.scenes[0].effects["read_noise"] = sim::Forced::off;
   const auto eye = make(settings, clock);
   const sim::Optics optics{settings.board.eye, settings.board.object,
                            sim::AngularProfile::flat_top(settings.board.eye.acceptance_rad)};
@@ -127,7 +127,9 @@ TEST_CASE("scenes are shown in turn") {
   SimulatedEyeSettings settings = small_eye();
   settings.scenes.push_back(sim::scene_on(settings.board.object, "white", hal::Image(1, 1, 1.0F)));
   settings.frames_per_scene = 3;
-  settings.effects_off = {"read_noise", "dark_level"};
+  for (sim::Scene& scene : settings.scenes) {
+    scene.effects = {{"read_noise", sim::Forced::off}, {"dark_level", sim::Forced::off}};
+  }
   const auto eye = make(settings, clock);
   REQUIRE(eye->start().has_value());
   for (std::uint64_t f = 0; f < 13; ++f) {
@@ -381,7 +383,8 @@ TEST_CASE("settings that make no sense are refused by name") {
   refused(ErrorCode::out_of_range, serial, {"frame_rate_hz", "nan"}, [](S& s) { s.frame_rate_hz = std::nan(""); });
   refused(ErrorCode::out_of_range, serial, {"frame_rate_hz", "10000000"}, [](S& s) { s.frame_rate_hz = 1e7; });
   refused(ErrorCode::out_of_range, "sensor.bits", {"40", "24"}, [](S& s) { s.board.sensor.bits = 40; });
-  refused(ErrorCode::not_found, "effects", {"reed_noise", "read_noise"}, [](S& s) { s.effects_off = {"reed_noise"}; });
+  refused(ErrorCode::not_found, "effects", {"reed_noise", "read_noise"},
+          [](S& s) { s.scenes[0].effects["reed_noise"] = sim::Forced::on; });
   refused(ErrorCode::out_of_range, "eye.rows", {"0", "4096"}, [](S& s) { s.board.eye.rows = 0; });
   refused(ErrorCode::out_of_range, "fig2", {"(0, 3)", "-1"},
           [](S& s) { s.scenes[0].surfaces[0].bands[0].pixels[3] = -1.0F; });

@@ -55,6 +55,15 @@ Result<void> check(const SimulateRequest& o) {
               "is missing: name the .npy file for the samples, for example --out y.npy");
 }
 
+/// A black picture's NMSE is 1: a larger bound says nothing about a reconstruction.
+std::optional<double> telling(double nmse) {
+  return nmse <= 1.0 ? std::optional(nmse) : std::nullopt;
+}
+
+std::string nmse_text(double nmse) {
+  return telling(nmse) ? significant(nmse, 2) : "> 1";
+}
+
 /// Which effects are simulated and why: for programs, and as a table.
 class Explanation {
  public:
@@ -66,7 +75,7 @@ class Explanation {
                {"at most, LSB", Align::right},
                {"NMSE", Align::right},
                {"decision", Align::left},
-               {"time", Align::right}}};
+               {"time, about", Align::right}}};
 
  private:
   [[nodiscard]] double seconds_of(const sim::PlannedEffect& e) const {
@@ -88,10 +97,10 @@ Explanation::Explanation(const sim::Plan& plan, double frames) : frames_(frames)
                            {"decision", std::string(name(e.decision))},
                            {"called_for_by", e.called_for_by},
                            {"bound_lsb", e.bound_lsb},
-                           {"nmse", e.nmse},
+                           {"nmse", telling(e.nmse)},
                            {"time_share", share}});
     table.add({std::string(e.effect->name), called ? e.called_for_by : "-", called ? significant(e.bound_lsb, 2) : "",
-               called ? significant(e.nmse, 2) : "", std::string(name(e.decision)),
+               called ? nmse_text(e.nmse) : "", std::string(name(e.decision)),
                e.on() ? fmt::format("{:.0f} %", 100.0 * share) : ""});
   }
 }
@@ -102,8 +111,8 @@ std::string sum_of(const sim::Plan& plan) {
   return fmt::format(
       "Noise is {} LSB of {} and makes an NMSE of about {} (sensitivity {}); what is left out adds at "
       "most {}.\n",
-      significant(plan.noise_lsb, 2), significant(plan.signal_rms_lsb, 3), significant(plan.noise_nmse, 2), measured,
-      significant(plan.left_out_nmse, 2));
+      significant(plan.noise_lsb, 2), significant(plan.signal_rms_lsb, 3), nmse_text(plan.noise_nmse), measured,
+      nmse_text(plan.left_out_nmse));
 }
 
 /// All frames after each other, M values each.
@@ -129,11 +138,11 @@ using Eye = std::unique_ptr<sim::SimulatedEye>;
 
 Result<Eye> eye_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o, Session& session,
                    hal::Clock& clock) {
-  auto settings = simulated_eye_settings(board, scene, o.seed);
+  sim::Scene seen = scene;
   for (const sim::Effect* effect : sim::effects()) {
-    if (o.noise_free && effect->error == sim::ErrorKind::white) settings.effects_off.emplace_back(effect->name);
+    if (o.noise_free && effect->noise) seen.effects[std::string(effect->name)] = sim::Forced::off;
   }
-  auto eye = planned_eye(board, std::move(settings), clock, session.progress());
+  auto eye = planned_eye(board, simulated_eye_settings(board, std::move(seen), o.seed), clock, session.progress());
   session.end_progress();
   return eye;
 }
@@ -212,9 +221,9 @@ Figures report_of(const Board& board, const sim::Scene& scene, const sim::Plan& 
             {"saturated_frames", samples.saturated_frames},
             {"effects", effects.list},
             {"noise_lsb", plan.noise_lsb},
-            {"noise_nmse", plan.noise_nmse},
+            {"noise_nmse", telling(plan.noise_nmse)},
             {"left_out_lsb", plan.left_out_lsb},
-            {"left_out_nmse", plan.left_out_nmse},
+            {"left_out_nmse", telling(plan.left_out_nmse)},
             {"sensitivity_measured", plan.sensitivity.measured},
             {"samples_file", o.out},
             {"truth_file", o.truth}};
@@ -259,7 +268,8 @@ Action declare(OptionList& options) {
   options.add("--frames", o->frames, "how many (default 1)");
   options.settings("simulate", o->overrides);
   options.add("--scene-distance", o->scene.distance_mm, "of the scene alone, mm from the lens tip").where(length_mm());
-  options.flag("--noise-free", o->noise_free, "exact signals: no read noise, no rounding (with --codes: rounded)");
+  options.flag("--noise-free", o->noise_free,
+               "exact signals: no noise of photons and electronics, no rounding (with --codes: rounded)");
   options.flag("--codes", o->codes, "raw codes instead of corrected samples");
   options
       .add("--truth", o->truth,

@@ -94,6 +94,20 @@ TEST_CASE("frames, seeds, codes and the noise-free signal") {
   }
 }
 
+TEST_CASE("the noise-free signal keeps what the eye as built makes of it in every frame") {
+  const CopiedBoard board;
+  const auto drawn = simulated(board, {"--noise-free"});
+  board.change("[sensor]", "[build]\noffset_spread_lsb = 30\ndust_share = 0.2\n[sensor]");
+  const auto built = simulated(board, {"--noise-free", "--frames", "2", "--seed", "4"});
+  CHECK(built.values == simulated(board, {"--noise-free", "--frames", "2", "--seed", "5"}).values);
+  double squares = 0.0;
+  for (std::size_t m = 0; m < 64; ++m) {
+    CHECK(built.values[m] == built.values[64 + m]);
+    squares += std::pow((built.values[m] - drawn.values[m]) * 65536.0 / 128.0, 2);
+  }
+  CHECK(std::sqrt(squares / 64.0) > 20.0);
+}
+
 TEST_CASE("channels that tell nothing are NaN with weight zero") {
   const CopiedBoard board;
   board.change("dead = []", "dead = [7]");
@@ -112,7 +126,7 @@ TEST_CASE("--explain says which effects are on and off and why, and --json the s
   const Ended text = test::compueye({"simulate", "--board", board.path().string(), "--explain", "--noise-free"});
   CHECK(text.exit_code == 0);
   CHECK(contains(text.out, "read_noise"));
-  CHECK(contains(text.out, "off, as the scene says"));
+  CHECK(contains(text.out, "off, as asked"));
   const Ended json = test::compueye({"simulate", "--board", board.path().string(), "--explain", "--json"});
   const auto object = nlohmann::json::parse(json.out, nullptr, false);
   REQUIRE_FALSE(object.is_discarded());

@@ -54,7 +54,7 @@ TEST_CASE("an emulated device plays a scene with the very codes of the simulated
       hal::VirtualClock clock(second);
       auto simulated = sim::SimulatedEye::create(settings, clock).value();
       auto played = std::make_shared<sim::Simulation>(
-          sim::Simulation::create(settings.board, settings.scenes[0], settings.seed, settings.sensitivity).value());
+          sim::Simulation::create(settings.board, settings.scenes[0], settings.seed).value());
       protocol::EmulatorSettings device_settings;
       device_settings.bus = bus;
       device_settings.descriptor = sim::describe_device(settings.board, "SCENE-1");
