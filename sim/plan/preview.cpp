@@ -113,16 +113,24 @@ void add_neighbours(const hal::EyeGeometry& eye, Preview& preview) {
   preview.previous_rms = std::sqrt(before / channels);
 }
 
-/// By moving the scene to both sides.
+/// By moving the scene to both sides. A relief takes longest and is as steep when it is pressed flat.
 hal::Result<void> add_slopes(const EyeToSimulate& board, const Scene& scene, double t_s, Preview& preview) {
   const double step = look_mm(board) / 2.0;
+  const bool pressed = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                                   [](const Surface& surface) { return surface.shape == Shape::relief; });
+  Glance glance{.t_s = t_s, .depth = !pressed, .occlusion = !pressed};
+  const Levels middle = pressed ? TRY(levels_of(board, scene, glance)) : preview.levels;
+  const auto moved = [&](double right, double up) {
+    glance.right_mm = right;
+    glance.up_mm = up;
+    return levels_of(board, scene, glance);
+  };
   for (const auto& [right, up] : {std::pair{step, 0.0}, {0.0, step}}) {
-    const Levels after = TRY(levels_of(board, scene, {.t_s = t_s, .right_mm = right, .up_mm = up}));
-    const Levels before = TRY(levels_of(board, scene, {.t_s = t_s, .right_mm = -right, .up_mm = -up}));
+    const Levels after = TRY(moved(right, up)), before = TRY(moved(-right, -up));
     Levels slope(after.size()), bend(after.size());
     for (std::size_t m = 0; m < after.size(); ++m) {
       slope[m] = (after[m] - before[m]) / (2.0 * step);
-      bend[m] = (after[m] + before[m] - 2.0 * preview.levels[m]) / (step * step);
+      bend[m] = (after[m] + before[m] - 2.0 * middle[m]) / (step * step);
       preview.gradient_largest = std::max(preview.gradient_largest, std::fabs(slope[m]));
     }
     preview.gradient_rms = std::max(preview.gradient_rms, rms(slope));

@@ -6,12 +6,13 @@
 #include <sstream>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/scene_choice.hpp"
-#include "sim/simulation.hpp"
+#include "firmware/eye/simulated_board.hpp"
+#include "sim/plan/plan.hpp"
+#include "sim/plan/preview.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/source_folder.hpp"
 
@@ -103,13 +104,13 @@ TEST_CASE("the scenes call for what their list says, and the still ones for noth
     CAPTURE(c.scene);
     const Board board = load_board(compueye::test::source_path(std::string("boards/") + c.board)).value();
     const std::string file = compueye::test::source_path(std::string("scenes/") + c.scene + ".toml");
-    sim::Scene scene = choose_scene(board, {file, 0, std::nullopt}).value();
-    const auto simulation = sim::Simulation::create(
-        {board.eye, board.object, board.build, board.sensor, board.detector, board.source.frame_rate_hz},
-        std::move(scene), 1, sim::Sensitivity::of_small_eye());
-    REQUIRE_MESSAGE(simulation.has_value(), simulation.error().text());
+    const sim::Scene scene = choose_scene(board, {file, 0, std::nullopt}).value();
+    const auto settings = simulated_eye_settings(board, scene, 1);
+    const auto preview = sim::preview_of(settings.board, scene);
+    REQUIRE_MESSAGE(preview.has_value(), preview.error().text());
+    const sim::Plan plan = sim::plan_effects({settings.board, scene, *preview}, sim::Sensitivity::of_small_eye());
     std::vector<std::string_view> called;
-    for (const sim::PlannedEffect& each : simulation->plan().effects) {
+    for (const sim::PlannedEffect& each : plan.effects) {
       const bool of_scene =
           each.effect->group == sim::EffectGroup::scene || each.effect->group == sim::EffectGroup::timing;
       if (of_scene && !each.called_for_by.empty()) called.push_back(each.effect->name);
