@@ -1,6 +1,6 @@
 # What keeps the compiler's time short. A precompiled header serves all targets of one set of flags: hal's those that
 # are optimised as the build type says, text's those of compueye_compile_quickly(). It hides
-# includes that are missing, and clang-tidy cannot read the compiler's: the presets debug and fuzz build without
+# includes that are missing, and clang-tidy cannot read the compiler's: the preset debug builds without
 # (CMAKE_DISABLE_PRECOMPILE_HEADERS).
 set(COMPUEYE_STANDARD_HEADERS
     <algorithm> <array> <atomic> <charconv> <chrono> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory>
