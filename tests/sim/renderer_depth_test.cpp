@@ -4,38 +4,32 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "sim/random/random.hpp"
 #include "sim/render/renderer.hpp"
 #include "tests/sanitized.hpp"
+#include "tests/sim/render_rig.hpp"
 #include "tests/sim/traced_rays.hpp"
 
 using namespace compueye;
 using sim::OpticsAsBuilt;
-using sim::Renderer;
 using sim::RenderSettings;
 using sim::Scene;
 using sim::Shape;
 using sim::Surface;
+using test::deg;
+using test::largest_difference;
+using test::RenderRig;
 
 namespace {
 
-constexpr double deg = std::numbers::pi / 180.0;
-
-struct Eye {
-  hal::EyeGeometry eye;
-  hal::ObjectPlane object;
-};
-
-Eye eye_of(double acceptance_deg) {
-  Eye e;
-  e.eye.rows = e.eye.columns = 3;
-  e.eye.interommatidial_rad = 22.0 * deg;
-  e.eye.acceptance_rad = acceptance_deg * deg;
-  e.object = {160, 160, 60.0, 60.0, 10.0};
-  return e;
+RenderRig eye_of(double acceptance_deg) {
+  RenderRig rig = test::small_eye(acceptance_deg);
+  rig.eye.rows = rig.eye.columns = 3;
+  rig.eye.interommatidial_rad = 22.0 * deg;
+  rig.object = {160, 160, 60.0, 60.0, 10.0};
+  return rig;
 }
 
 hal::Image random_picture(int rows, int cols, std::uint64_t seed) {
@@ -62,27 +56,19 @@ RenderSettings at_depth(bool occlusion, double tolerance = 3e-3) {
   return settings;
 }
 
-std::vector<double> rendered(const Eye& e, const Scene& scene, const RenderSettings& settings, double obliquity = 0.0) {
-  OpticsAsBuilt optics = OpticsAsBuilt::drawn(e.eye);
+std::vector<double> rendered(RenderRig rig, const Scene& scene, const RenderSettings& settings,
+                             double obliquity = 0.0) {
+  rig.settings = settings;
+  OpticsAsBuilt optics = OpticsAsBuilt::drawn(rig.eye);
   optics.obliquity = obliquity;
-  auto renderer = Renderer::create(e.eye, e.object, optics, settings, scene);
-  REQUIRE_MESSAGE(renderer.has_value(), (renderer ? "" : renderer.error().text()));
-  std::vector<double> signals(static_cast<std::size_t>(e.eye.ommatidia()));
-  renderer->render(0.0, signals);
-  return signals;
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0.0;
-  for (std::size_t m = 0; m < a.size(); ++m) largest = std::max(largest, std::fabs(a[m] - b[m]));
-  return largest;
+  return test::rendered(rig, scene, optics);
 }
 
 /// Largest difference from traced rays as a share of the brightest signal.
-double off_traced(const Eye& e, const Scene& scene, const std::vector<double>& signals, bool occlusion,
+double off_traced(const RenderRig& rig, const Scene& scene, const std::vector<double>& signals, bool occlusion,
                   double obliquity = 0.0, int rays_across = 700) {
-  const OpticsAsBuilt optics = OpticsAsBuilt::drawn(e.eye);
-  const test::TracedRays rays(e.eye, e.object, scene, occlusion, test::sanitized ? 200 : rays_across);
+  const OpticsAsBuilt optics = OpticsAsBuilt::drawn(rig.eye);
+  const test::TracedRays rays(rig.eye, rig.object, scene, occlusion, test::sanitized ? 200 : rays_across);
   double largest = 0.0;
   for (std::size_t m = 0; m < signals.size(); ++m) {
     largest = std::max(largest, std::fabs(signals[m] - rays.signal(optics.ommatidia[m], obliquity)));
@@ -101,23 +87,23 @@ TEST_CASE("tilted, leant and rolled planes agree with traced rays, and with a th
         CAPTURE(acceptance_deg);
         CAPTURE(pixels);
         CAPTURE(tilt_deg);
-        const Eye e = eye_of(acceptance_deg);
+        const RenderRig rig = eye_of(acceptance_deg);
         Scene scene;
         scene.surfaces.push_back(sheet(pixels, 30.0, 20.0, 3));
         scene.surfaces[0].pose.tilt_rad = tilt_deg * deg;
         scene.surfaces[0].pose.lean_rad = -0.3 * tilt_deg * deg;
         scene.surfaces[0].pose.roll_rad = 20.0 * deg;
         scene.surfaces[0].pose.centre_mm = {2.0, -1.0, 0.0};
-        const std::vector<double> signals = rendered(e, scene, at_depth(false));
-        CHECK(off_traced(e, scene, signals, false) < traced_share);
+        const std::vector<double> signals = rendered(rig, scene, at_depth(false));
+        CHECK(off_traced(rig, scene, signals, false) < traced_share);
         if (test::sanitized) continue;
-        CHECK(largest_difference(signals, rendered(e, scene, at_depth(false, 3e-6))) < 3e-3);
+        CHECK(largest_difference(signals, rendered(rig, scene, at_depth(false, 3e-6))) < 3e-3);
       }
     }
   }
 }
 TEST_CASE("what is nearer along a ray hides what is behind, also where planes cut through each other") {
-  const Eye e = eye_of(60.0);
+  const RenderRig rig = eye_of(60.0);
   Scene scene;
   scene.surfaces.push_back(sheet(100, 60.0, 20.0, 1));
   scene.surfaces.push_back(sheet(7, 9.0, 14.0, 2));
@@ -128,16 +114,16 @@ TEST_CASE("what is nearer along a ray hides what is behind, also where planes cu
   scene.surfaces[2].pose.centre_mm = {3.0, -3.0, 0.0};
   scene.surfaces[2].pose.tilt_rad = -40.0 * deg;
   scene.surfaces[2].pose.roll_rad = 30.0 * deg;
-  const std::vector<double> signals = rendered(e, scene, at_depth(true));
-  CHECK(off_traced(e, scene, signals, true) < traced_share);
-  if (!test::sanitized) CHECK(largest_difference(signals, rendered(e, scene, at_depth(true, 3e-6))) < 3e-3);
-  const std::vector<double> added = rendered(e, scene, at_depth(false));
-  CHECK(off_traced(e, scene, added, false) < traced_share);
+  const std::vector<double> signals = rendered(rig, scene, at_depth(true));
+  CHECK(off_traced(rig, scene, signals, true) < traced_share);
+  if (!test::sanitized) CHECK(largest_difference(signals, rendered(rig, scene, at_depth(true, 3e-6))) < 3e-3);
+  const std::vector<double> added = rendered(rig, scene, at_depth(false));
+  CHECK(off_traced(rig, scene, added, false) < traced_share);
   CHECK(largest_difference(signals, added) > 1.0);
 }
 
 TEST_CASE("balls agree with traced rays, hide and are hidden") {
-  const Eye e = eye_of(50.0);
+  const RenderRig rig = eye_of(50.0);
   Scene scene;
   scene.surfaces.push_back(sheet(40, 60.0, 25.0, 1));
   scene.surfaces.push_back(sheet(9, 9.0, 12.0, 2));
@@ -146,27 +132,27 @@ TEST_CASE("balls agree with traced rays, hide and are hidden") {
   scene.surfaces[1].pose.roll_rad = 20.0 * deg;
   scene.surfaces.push_back(sheet(3, 4.0, 6.0, 5));
   scene.surfaces[2].pose.centre_mm = {1.0, 2.0, 0.0};
-  const std::vector<double> signals = rendered(e, scene, at_depth(true));
-  CHECK(off_traced(e, scene, signals, true) < traced_share);
-  if (!test::sanitized) CHECK(largest_difference(signals, rendered(e, scene, at_depth(true, 3e-5))) < 3e-3);
+  const std::vector<double> signals = rendered(rig, scene, at_depth(true));
+  CHECK(off_traced(rig, scene, signals, true) < traced_share);
+  if (!test::sanitized) CHECK(largest_difference(signals, rendered(rig, scene, at_depth(true, 3e-5))) < 3e-3);
 }
 
 TEST_CASE("rays count less by the power of the cosine of their angle") {
-  const Eye e = eye_of(60.0);
+  const RenderRig rig = eye_of(60.0);
   for (const double tilt_deg : {0.0, 40.0}) {
     CAPTURE(tilt_deg);
     Scene scene;
     scene.surfaces.push_back(sheet(60, 40.0, 15.0, 4));
     scene.surfaces[0].pose.tilt_rad = tilt_deg * deg;
-    const std::vector<double> signals = rendered(e, scene, at_depth(false), 3.0);
-    CHECK(off_traced(e, scene, signals, false, 3.0) < traced_share);
-    if (!test::sanitized) CHECK(largest_difference(signals, rendered(e, scene, at_depth(false, 3e-6), 3.0)) < 3e-3);
+    const std::vector<double> signals = rendered(rig, scene, at_depth(false), 3.0);
+    CHECK(off_traced(rig, scene, signals, false, 3.0) < traced_share);
+    if (!test::sanitized) CHECK(largest_difference(signals, rendered(rig, scene, at_depth(false, 3e-6), 3.0)) < 3e-3);
   }
 }
 
 // The picture's pixels are half as wide as the heights', so that both take the relief as the same bilinear patches.
 TEST_CASE("reliefs agree with traced rays, also where they hide a part of themselves") {
-  const Eye e = eye_of(50.0);
+  const RenderRig rig = eye_of(50.0);
   for (const double highest_mm : {0.5, 4.0}) {
     CAPTURE(highest_mm);
     Scene scene;
@@ -177,17 +163,17 @@ TEST_CASE("reliefs agree with traced rays, also where they hide a part of themse
     for (float& height : relief.heights.pixels) height *= static_cast<float>(highest_mm);
     relief.pose.centre_mm = {1.0, 0.5, 0.0};
     relief.pose.tilt_rad = 10.0 * deg;
-    const std::vector<double> signals = rendered(e, scene, at_depth(true));
-    CHECK(off_traced(e, scene, signals, true, 0.0, 150) < 2.0 * traced_share);
-    const double unhidden = largest_difference(signals, rendered(e, scene, at_depth(false)));
+    const std::vector<double> signals = rendered(rig, scene, at_depth(true));
+    CHECK(off_traced(rig, scene, signals, true, 0.0, 150) < 2.0 * traced_share);
+    const double unhidden = largest_difference(signals, rendered(rig, scene, at_depth(false)));
     CHECK((unhidden > 0.1) == (highest_mm > 1.0));
-    if (!test::sanitized) CHECK(largest_difference(signals, rendered(e, scene, at_depth(true, 3e-4))) < 6e-3);
+    if (!test::sanitized) CHECK(largest_difference(signals, rendered(rig, scene, at_depth(true, 3e-4))) < 6e-3);
     relief.heights = hal::Image(1, 1, 2.0F);
     relief.pose.tilt_rad = 0.0;
-    const std::vector<double> level = rendered(e, scene, at_depth(true));
+    const std::vector<double> level = rendered(rig, scene, at_depth(true));
     relief.shape = Shape::plane;
     relief.heights = {};
     relief.distance_mm = 12.0;
-    CHECK(largest_difference(level, rendered(e, scene, at_depth(true))) < 6e-3);
+    CHECK(largest_difference(level, rendered(rig, scene, at_depth(true))) < 6e-3);
   }
 }

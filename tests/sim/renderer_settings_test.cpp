@@ -4,107 +4,61 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "sim/pictures/built_in_scenes.hpp"
 #include "sim/render/renderer.hpp"
 #include "tests/memory/allocation_counter.hpp"
+#include "tests/sim/render_rig.hpp"
 
 using namespace compueye;
 using sim::OpticsAsBuilt;
 using sim::Renderer;
-using sim::RenderSettings;
 using sim::Scene;
 using sim::scene_on;
-
-namespace {
-
-constexpr double deg = std::numbers::pi / 180.0;
-
-struct Setup {
-  hal::EyeGeometry eye;
-  hal::ObjectPlane object;
-  RenderSettings settings;
-};
-
-Setup small_eye(double acceptance_deg = 8.0) {
-  Setup setup;
-  setup.eye.interommatidial_rad = 1.5 * deg;
-  setup.eye.acceptance_rad = acceptance_deg * deg;
-  setup.settings.true_depth = true;
-  return setup;
-}
-
-// The field of 80x80 ommatidia 2.25 deg apart, with every fourth of them.
-Setup wide_eye() {
-  Setup setup = small_eye(60.0);
-  setup.eye.rows = setup.eye.columns = 20;
-  setup.eye.interommatidial_rad = 9.0 * deg;
-  setup.object = {160, 160, 60.0, 60.0, 10.0};
-  return setup;
-}
-
-std::vector<double> rendered(const Setup& setup, const Scene& scene, const OpticsAsBuilt& optics, double t_s = 0.0) {
-  auto renderer = Renderer::create(setup.eye, setup.object, optics, setup.settings, scene);
-  REQUIRE(renderer.has_value());
-  std::vector<double> signals(optics.ommatidia.size());
-  renderer->render(t_s, signals);
-  return signals;
-}
-
-std::vector<double> rendered(const Setup& setup, const Scene& scene, double t_s = 0.0) {
-  return rendered(setup, scene, OpticsAsBuilt::drawn(setup.eye), t_s);
-}
-
-hal::Image picture_of(const char* name, const hal::ObjectPlane& object, std::uint64_t seed = 0) {
-  return sim::render_built_in(name, object.rows, object.cols, seed).value();
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0.0;
-  for (std::size_t m = 0; m < a.size(); ++m) largest = std::max(largest, std::fabs(a[m] - b[m]));
-  return largest;
-}
-
-}  // namespace
+using test::deg;
+using test::largest_difference;
+using test::picture_of;
+using test::rendered;
+using test::RenderRig;
+using test::small_eye;
+using test::wide_eye;
 
 TEST_CASE("with everything off surfaces lie flat on the object plane as they stand at first, later ones on top") {
-  Setup setup = small_eye(20.0);
-  Scene plain = scene_on(setup.object, "bars", picture_of("bars", setup.object));
+  RenderRig rig = small_eye(20.0);
+  Scene plain = scene_on(rig.object, "bars", picture_of("bars", rig.object));
   plain.surfaces[0].pose.centre_mm = {1.0, -0.5, 0.0};
-  const std::vector<double> expected = rendered(setup, plain);
+  const std::vector<double> expected = rendered(rig, plain);
   Scene scene = plain;
   scene.surfaces[0].distance_mm = 12.0;
   scene.surfaces[0].pose.tilt_rad = 30.0 * deg;
   scene.surfaces[0].motion.velocity_mm_per_s = {1.0, 2.0, 3.0};
-  setup.settings.true_depth = false;
-  CHECK(rendered(setup, scene, 5.0) == expected);
-  setup.settings.motion = true;
+  rig.settings.true_depth = false;
+  CHECK(rendered(rig, scene, 5.0) == expected);
+  rig.settings.motion = true;
   plain.surfaces[0].pose.centre_mm = {6.0, 9.5, 0.0};
-  CHECK(largest_difference(rendered(setup, scene, 5.0), rendered(setup, plain)) < 1e-9);
+  CHECK(largest_difference(rendered(rig, scene, 5.0), rendered(rig, plain)) < 1e-9);
 
-  Scene two = scene_on(setup.object, "white", hal::Image(1, 1, 1.0F));
+  Scene two = scene_on(rig.object, "white", hal::Image(1, 1, 1.0F));
   two.surfaces.push_back(two.surfaces[0]);
   two.surfaces[1].bands = {hal::Image(2, 1)};
   two.surfaces[1].bands[0].at(0, 0) = 1.0F;
   two.surfaces[1].height_mm = two.surfaces[1].width_mm = 4.0;
   hal::Image covered(4, 4, 1.0F);
   covered.at(2, 1) = covered.at(2, 2) = 0.0F;
-  setup.settings.occlusion = true;
-  const std::vector<double> on_top = rendered(setup, scene_on(setup.object, "covered", covered));
-  CHECK(largest_difference(rendered(setup, two), on_top) < 2.0 * setup.settings.tolerance);
+  rig.settings.occlusion = true;
+  const std::vector<double> on_top = rendered(rig, scene_on(rig.object, "covered", covered));
+  CHECK(largest_difference(rendered(rig, two), on_top) < 2.0 * rig.settings.tolerance);
   std::swap(two.surfaces[0], two.surfaces[1]);
-  const std::vector<double> white = rendered(setup, scene_on(setup.object, "white", hal::Image(1, 1, 1.0F)));
-  CHECK(largest_difference(rendered(setup, two), white) < 2.0 * setup.settings.tolerance);
+  const std::vector<double> white = rendered(rig, scene_on(rig.object, "white", hal::Image(1, 1, 1.0F)));
+  CHECK(largest_difference(rendered(rig, two), white) < 2.0 * rig.settings.tolerance);
 }
 
 TEST_CASE("bands are weighed, or their mean is taken") {
-  Setup setup = small_eye();
-  Scene scene = scene_on(setup.object, "bands", picture_of("bars", setup.object));
-  const std::vector<double> first = rendered(setup, scene);
+  RenderRig rig = small_eye();
+  Scene scene = scene_on(rig.object, "bands", picture_of("bars", rig.object));
+  const std::vector<double> first = rendered(rig, scene);
   scene.surfaces[0].bands.push_back(hal::Image(16, 16));
   scene.surfaces[0].bands.push_back(hal::Image(16, 16));
   const auto scaled = [&](double factor) {
@@ -112,18 +66,18 @@ TEST_CASE("bands are weighed, or their mean is taken") {
     for (double& value : result) value *= factor;
     return result;
   };
-  setup.settings.band_weights[0] = 0.7;
-  setup.settings.band_weights[1] = 0.2;
-  setup.settings.band_weights[2] = 0.1;
-  CHECK(largest_difference(rendered(setup, scene), scaled(1.0 / 3.0)) < 1e-5);
-  setup.settings.bands = true;
-  CHECK(largest_difference(rendered(setup, scene), scaled(0.7)) < 1e-5);
+  rig.settings.band_weights[0] = 0.7;
+  rig.settings.band_weights[1] = 0.2;
+  rig.settings.band_weights[2] = 0.1;
+  CHECK(largest_difference(rendered(rig, scene), scaled(1.0 / 3.0)) < 1e-5);
+  rig.settings.bands = true;
+  CHECK(largest_difference(rendered(rig, scene), scaled(0.7)) < 1e-5);
 }
 
 // Against the ramps drawn out in a picture 32 times finer.
 TEST_CASE("pixel edges of a display are ramps of a share of a pixel") {
-  Setup setup = small_eye(6.0);
-  const hal::Image coarse = picture_of("dots", setup.object, 3);
+  RenderRig rig = small_eye(6.0);
+  const hal::Image coarse = picture_of("dots", rig.object, 3);
   for (const double share : {0.25, 0.5, 1.0}) {
     CAPTURE(share);
     constexpr int factor = 32;
@@ -144,16 +98,16 @@ TEST_CASE("pixel edges of a display are ramps of a share of a pixel") {
         fine.at(r, c) = sum / static_cast<float>(window * window);
       }
     }
-    Scene drawn = scene_on(setup.object, "drawn", fine);
+    Scene drawn = scene_on(rig.object, "drawn", fine);
     drawn.surfaces[0].width_mm = drawn.surfaces[0].height_mm = 9.0;
-    const std::vector<double> expected = rendered(setup, drawn);
-    Scene scene = scene_on(setup.object, "dots", coarse);
-    setup.settings.pixel_edge_blur = share;
-    const std::vector<double> printed = rendered(setup, scene);
+    const std::vector<double> expected = rendered(rig, drawn);
+    Scene scene = scene_on(rig.object, "dots", coarse);
+    rig.settings.pixel_edge_blur = share;
+    const std::vector<double> printed = rendered(rig, scene);
     scene.surfaces[0].shines = true;
-    const std::vector<double> shown = rendered(setup, scene);
-    setup.settings.pixel_edge_blur = 0.0;
-    CHECK(printed == rendered(setup, scene));
+    const std::vector<double> shown = rendered(rig, scene);
+    rig.settings.pixel_edge_blur = 0.0;
+    CHECK(printed == rendered(rig, scene));
     const double effect = largest_difference(expected, printed);
     CHECK(effect > 0.002);
     CHECK(largest_difference(expected, shown) < 0.1 * effect);
@@ -161,19 +115,19 @@ TEST_CASE("pixel edges of a display are ramps of a share of a pixel") {
 }
 
 TEST_CASE("what did not move costs nothing, and what moved in front is taken off and put back") {
-  Setup setup = wide_eye();
-  setup.settings.motion = setup.settings.occlusion = true;
-  Scene scene = scene_on(setup.object, "line art", picture_of("line-art", setup.object));
+  RenderRig rig = wide_eye();
+  rig.settings.motion = rig.settings.occlusion = true;
+  Scene scene = scene_on(rig.object, "line art", picture_of("line-art", rig.object));
   scene.surfaces[0].pose.tilt_rad = 10.0 * deg;
   sim::Surface front;
   front.name = "front";
-  front.bands = {picture_of("dots", setup.object)};
+  front.bands = {picture_of("dots", rig.object)};
   front.width_mm = front.height_mm = 5.0;
   front.distance_mm = 6.0;
   front.motion.start_s = 1.0;
   front.motion.velocity_mm_per_s = {8.0, 0.0, 0.0};
   scene.surfaces.push_back(front);
-  auto renderer = Renderer::create(setup.eye, setup.object, OpticsAsBuilt::drawn(setup.eye), setup.settings, scene);
+  auto renderer = Renderer::create(rig.eye, rig.object, OpticsAsBuilt::drawn(rig.eye), rig.settings, scene);
   REQUIRE(renderer.has_value());
   std::vector<double> signals(400);
   renderer->render(0.0, signals);
@@ -185,20 +139,20 @@ TEST_CASE("what did not move costs nothing, and what moved in front is taken off
   for (const double t : {1.5, 2.0, 1.2, 9.0}) {
     renderer->render(t, signals);
     CHECK(renderer->surfaces_rendered() == 2);
-    CHECK(signals == rendered(setup, scene, t));
+    CHECK(signals == rendered(rig, scene, t));
   }
   renderer->render(0.0, signals);
   CHECK(signals == before);
   scene.surfaces[1].motion.velocity_mm_per_s = {0.0, 0.0, -4.0};
   renderer->render(9.0, signals);  // it is in the eye by now
   scene.surfaces.pop_back();
-  CHECK(largest_difference(signals, rendered(setup, scene)) < 2.0 * setup.settings.tolerance);
+  CHECK(largest_difference(signals, rendered(rig, scene)) < 2.0 * rig.settings.tolerance);
 }
 
 TEST_CASE("frames after the first do not allocate, and renderers in threads do not disturb each other") {
-  Setup setup = wide_eye();
-  setup.settings.motion = setup.settings.occlusion = true;
-  Scene scene = scene_on(setup.object, "line art", picture_of("line-art", setup.object));
+  RenderRig rig = wide_eye();
+  rig.settings.motion = rig.settings.occlusion = true;
+  Scene scene = scene_on(rig.object, "line art", picture_of("line-art", rig.object));
   for (int k = 1; k < 4; ++k) {
     scene.surfaces.push_back(scene.surfaces[0]);
     scene.surfaces.back().width_mm = scene.surfaces.back().height_mm = 3.0 * k;
@@ -207,7 +161,7 @@ TEST_CASE("frames after the first do not allocate, and renderers in threads do n
     scene.surfaces.back().motion.tilt_rad_per_s = 0.1 * k;
   }
   const auto make = [&] {
-    return Renderer::create(setup.eye, setup.object, OpticsAsBuilt::drawn(setup.eye), setup.settings, scene);
+    return Renderer::create(rig.eye, rig.object, OpticsAsBuilt::drawn(rig.eye), rig.settings, scene);
   };
   auto renderer = make();
   REQUIRE(renderer.has_value());
@@ -228,32 +182,32 @@ TEST_CASE("frames after the first do not allocate, and renderers in threads do n
 }
 
 TEST_CASE("what cannot be rendered is refused by name") {
-  const Setup usual = small_eye();
+  const RenderRig usual = small_eye();
   const Scene white = scene_on(usual.object, "white", hal::Image(1, 1, 1.0F));
-  const auto error = [](const Setup& setup, const OpticsAsBuilt& optics, const Scene& scene) {
-    const auto result = Renderer::create(setup.eye, setup.object, optics, setup.settings, scene);
+  const auto error = [](const RenderRig& rig, const OpticsAsBuilt& optics, const Scene& scene) {
+    const auto result = Renderer::create(rig.eye, rig.object, optics, rig.settings, scene);
     REQUIRE_FALSE(result.has_value());
     return result.error();
   };
-  const auto place = [&](const Setup& setup) {
-    const hal::Error found = error(setup, OpticsAsBuilt::drawn(setup.eye), white);
+  const auto place = [&](const RenderRig& rig) {
+    const hal::Error found = error(rig, OpticsAsBuilt::drawn(rig.eye), white);
     CHECK(found.code == hal::ErrorCode::out_of_range);
     return found.place;
   };
-  Setup setup = usual;
-  setup.object.width_mm = -1.0;
-  CHECK(place(setup) == "object.width_mm");
-  setup = usual;
-  setup.eye.acceptance_rad = std::nan("");
-  CHECK(place(setup) == "eye.acceptance_angle_deg");
+  RenderRig rig = usual;
+  rig.object.width_mm = -1.0;
+  CHECK(place(rig) == "object.width_mm");
+  rig = usual;
+  rig.eye.acceptance_rad = std::nan("");
+  CHECK(place(rig) == "eye.acceptance_angle_deg");
   for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    setup = usual;
-    setup.settings.tolerance = bad;
-    CHECK(place(setup) == "render.tolerance");
+    rig = usual;
+    rig.settings.tolerance = bad;
+    CHECK(place(rig) == "render.tolerance");
   }
-  setup = usual;
-  setup.settings.pixel_edge_blur = 1.5;
-  CHECK(place(setup) == "render.pixel_edge_blur");
+  rig = usual;
+  rig.settings.pixel_edge_blur = 1.5;
+  CHECK(place(rig) == "render.pixel_edge_blur");
 
   OpticsAsBuilt optics = OpticsAsBuilt::drawn(usual.eye);
   optics.ommatidia.pop_back();
