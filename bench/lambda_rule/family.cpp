@@ -21,8 +21,8 @@
 #include "recon/lambda_rule.hpp"
 #include "recon/metrics.hpp"
 #include "recon/reconstructor.hpp"
-#include "sim/optics.hpp"
 #include "sim/random/random.hpp"
+#include "sim/render/drawn_signals.hpp"
 
 namespace compueye::bench {
 namespace {
@@ -153,8 +153,7 @@ class FamilyEye {
     if (case_.measured) {
       response_.forward(std::vector<double>(frame.truth.pixels.begin(), frame.truth.pixels.end()), signal);
     } else {
-      const sim::Optics optics{case_.eye, case_.object, sim::AngularProfile::flat_top(case_.eye.acceptance_rad)};
-      signal = optics.expose(sim::scene_on(case_.object, scene, frame.truth)).value();
+      signal = sim::drawn_signals(case_.eye, case_.object, sim::scene_on(case_.object, scene, frame.truth)).value();
     }
     double squares = 0.0;
     for (const std::int32_t row : seeing_) {

@@ -11,9 +11,9 @@
 #include "recon/lambda_rule.hpp"
 #include "recon/metrics.hpp"
 #include "recon/solver_list.hpp"
-#include "sim/optics.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
 #include "sim/random/random.hpp"
+#include "sim/render/drawn_signals.hpp"
 
 namespace compueye::bench {
 namespace {
@@ -82,8 +82,7 @@ std::vector<float> SweptEye::samples(const std::string& scene, const hal::Image&
     const std::vector<double> x(truth.pixels.begin(), truth.pixels.end());
     response_.forward(x, signal);
   } else {
-    const sim::Optics optics{case_.eye, case_.object, sim::AngularProfile::flat_top(case_.eye.acceptance_rad)};
-    signal = optics.expose(sim::scene_on(case_.object, scene, truth)).value();
+    signal = sim::drawn_signals(case_.eye, case_.object, sim::scene_on(case_.object, scene, truth)).value();
   }
   std::vector<float> y(signal.size());
   for (std::size_t m = 0; m < y.size(); ++m) {

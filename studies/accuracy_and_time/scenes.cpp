@@ -12,8 +12,8 @@
 #include "hal/sample_block.hpp"
 #include "hal/sample_source.hpp"
 #include "hal/try.hpp"
-#include "sim/optics.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
+#include "sim/render/drawn_signals.hpp"
 #include "sim/scene/scene_truth.hpp"
 #include "sim/simulation.hpp"
 
@@ -37,14 +37,17 @@ Result<void> check_name(const std::string& name) {
                                name, fmt::join(varied, ", ")));
 }
 
-Result<EvaluationScene> drawn(const Board& board, const sim::Optics& optics, const std::string& name,
-                              std::uint64_t seed, bool moving) {
+Result<EvaluationScene> drawn(const Board& board, const std::string& name, std::uint64_t seed, bool moving) {
   const sim::Scene scene = TRY(choose_scene(board, {name, seed, std::nullopt}));
-  EvaluationScene drawing{name, seed, TRY(sim::scene_truth(scene, board.object)), TRY(optics.expose(scene)), {}};
+  EvaluationScene drawing{name,
+                          seed,
+                          TRY(sim::scene_truth(scene, board.object)),
+                          TRY(sim::drawn_signals(board.eye, board.object, scene)),
+                          {}};
   for (std::size_t left = moving_frames; moving && left > 0; --left) {
     sim::Scene earlier = scene;
     earlier.surfaces.front().bands = {before_arrival(scene.surfaces.front().picture(), left)};
-    drawing.moving.push_back(TRY(optics.expose(earlier)));
+    drawing.moving.push_back(TRY(sim::drawn_signals(board.eye, board.object, earlier)));
   }
   return drawing;
 }
@@ -73,14 +76,13 @@ std::vector<std::string> usual_scenes(const Board& board) {
 Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board, const std::vector<std::string>& names,
                                                             bool moving, const recon::Progress& progress) {
   for (const std::string& name : names) TRY(check_name(name));
-  const sim::Optics optics{board.eye, board.object, sim::AngularProfile::flat_top(board.eye.acceptance_rad)};
   std::vector<EvaluationScene> scenes;
   while (scenes.size() < evaluation_scenes) {
     if (!progress("evaluation scenes", static_cast<double>(scenes.size()), static_cast<double>(evaluation_scenes))) {
       return hal::fail(ErrorCode::interrupted, board.name, "stopped before anything was measured");
     }
     const std::size_t i = scenes.size();
-    scenes.push_back(TRY(drawn(board, optics, names[i % names.size()], first_evaluation_seed + i, moving)));
+    scenes.push_back(TRY(drawn(board, names[i % names.size()], first_evaluation_seed + i, moving)));
   }
   return scenes;
 }

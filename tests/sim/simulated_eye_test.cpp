@@ -1,7 +1,5 @@
 #include "sim/simulated_eye.hpp"
 
-#include "sim/optics.hpp"
-
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <numeric>
 
 #include "sim/pictures/built_in_scenes.hpp"
+#include "sim/render/drawn_signals.hpp"
 #include "tests/hal/error_check.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
@@ -73,9 +72,7 @@ TEST_CASE("without noise the codes are the rounded signals of the optics") {
   SimulatedEyeSettings settings = small_eye();
   settings.scenes[0].effects["read_noise"] = sim::Forced::off;
   const auto eye = make(settings, clock);
-  const sim::Optics optics{settings.board.eye, settings.board.object,
-                           sim::AngularProfile::flat_top(settings.board.eye.acceptance_rad)};
-  const auto direct = optics.expose(settings.scenes[0]).value();
+  const auto direct = sim::drawn_signals(settings.board.eye, settings.board.object, settings.scenes[0]).value();
   REQUIRE(eye->start().has_value());
   const auto block = eye->read(0);
   REQUIRE(block.has_value());
