@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <array>
-
 #include "sim/effects/effect_list.hpp"
 #include "sim/effects/estimates.hpp"
 #include "sim/effects/picture_change.hpp"
@@ -8,11 +5,9 @@
 namespace compueye::sim {
 namespace {
 
-using Weights = std::array<double, 3>;
-
 /// Of each band: response times spectrum (a display's own is white), sum 1; nothing where they have nothing in common.
-Weights weights(const Circumstances& c, const Surface& surface) noexcept {
-  Weights w{};
+BandWeights weights(const Circumstances& c, const Surface& surface) noexcept {
+  BandWeights w{};
   double sum = 0.0;
   for (std::size_t b = 0; b < 3; ++b) {
     w[b] = c.board.detector.spectral_response[b] * (surface.shines ? 1.0 : c.scene.light.spectrum[b]);
@@ -22,29 +17,15 @@ Weights weights(const Circumstances& c, const Surface& surface) noexcept {
   return w;
 }
 
-bool even(const Weights& w) noexcept {
-  return std::all_of(w.begin(), w.end(), [](double each) { return each == 1.0 / 3.0; });
-}
-
 bool coloured(const Surface& surface) noexcept {
   const std::vector<hal::Image>& bands = surface.bands;
   return bands.size() == 3 && (bands[0].pixels != bands[1].pixels || bands[0].pixels != bands[2].pixels);
 }
 
-hal::Image seen(const Surface& surface, const Weights& w) {
-  hal::Image picture = surface.picture();
-  for (std::size_t n = 0; n < picture.pixels.size(); ++n) {
-    double sum = 0.0;
-    for (std::size_t b = 0; b < 3; ++b) sum += w[b] * static_cast<double>(surface.bands[b].pixels[n]);
-    picture.pixels[n] = static_cast<float>(sum);
-  }
-  return picture;
-}
-
 std::string calls_for(const Circumstances& c) {
   for (const Surface& surface : c.scene.surfaces) {
-    const Weights w = weights(c, surface);
-    if (!coloured(surface) || even(w)) continue;
+    const BandWeights w = weights(c, surface);
+    if (!coloured(surface) || w == even_bands) continue;
     return "'" + surface.name + "' is coloured, seen by " + figure(w[0]) + " red, " + figure(w[1]) + " green, " +
            figure(w[2]) + " blue";
   }
@@ -57,16 +38,16 @@ double bound(const Circumstances& c) {
   for (const Surface& surface : c.scene.surfaces) {
     if (!coloured(surface)) continue;
     const double light = surface.shines ? 1.0 : c.scene.light.level;
-    Weights change = weights(c, surface);
-    for (double& each : change) each = light * (each - 1.0 / 3.0);
-    sum += picture_change_lsb(c, surface, seen(surface, change));
+    BandWeights change = weights(c, surface);
+    for (std::size_t b = 0; b < 3; ++b) change[b] = light * (change[b] - even_bands[b]);
+    sum += picture_change_lsb(c, surface, surface.weighed(change));
   }
   return sum;
 }
 
 void apply(const Circumstances& c, Workings& w) {
   for (Surface& surface : w.scene.surfaces) {
-    if (coloured(surface)) surface.bands = {seen(surface, weights(c, surface))};
+    if (coloured(surface)) surface.bands = {surface.weighed(weights(c, surface))};
   }
 }
 

@@ -8,8 +8,6 @@ struct RenderSettings {
   bool true_depth = false;  ///< distances, tilts, spheres and reliefs as they are
   bool occlusion = false;   ///< what is nearer hides what is behind; off: light of all surfaces adds up
   bool motion = false;      ///< surfaces where they are at the time asked for
-  bool bands = false;       ///< three bands weighed by light and eye; off: the mean of a surface's bands
-  double band_weights[3] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};  ///< sum 1
   /// Share of a picture's pixel over which its edges are blurred on the display, 0 .. 1.
   double pixel_edge_blur = 0.0;
   /// Largest error of any signal that the integration may leave, in fully seen white pixels of the object plane.

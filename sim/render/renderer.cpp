@@ -65,21 +65,7 @@ Result<void> check(const RenderSettings& settings) {
     return fail(ErrorCode::out_of_range, "render.pixel_edge_blur",
                 "is " + std::to_string(settings.pixel_edge_blur) + ", expected 0 to 1");
   }
-  for (const double weight : settings.band_weights) {
-    if (!std::isfinite(weight)) return fail(ErrorCode::out_of_range, "render.band_weights", "a weight is not finite");
-  }
   return {};
-}
-
-hal::Image grey(const Surface& surface, const RenderSettings& settings) {
-  if (surface.bands.size() == 1) return surface.picture();
-  hal::Image sum(surface.picture().rows, surface.picture().cols);
-  for (std::size_t b = 0; b < 3; ++b) {
-    const double weight = settings.bands ? settings.band_weights[b] : 1.0 / 3.0;
-    const std::vector<float>& band = surface.bands[b].pixels;
-    for (std::size_t n = 0; n < band.size(); ++n) sum.pixels[n] += static_cast<float>(weight) * band[n];
-  }
-  return sum;
 }
 
 /// Each pixel `down` x `across` times.
@@ -93,7 +79,7 @@ hal::Image repeated(const hal::Image& picture, int down, int across) {
 
 /// A relief's heights change from pixel to pixel, so its picture is at least as fine as they are. Its edges stay sharp.
 PictureSums sums_of(const Surface& surface, const PlacedSurface& place, const RenderSettings& settings, bool tiles) {
-  hal::Image picture = grey(surface, settings);
+  hal::Image picture = surface.grey();
   double width = 2.0 * place.half_width, height = 2.0 * place.half_height;
   if (place.shape == Shape::relief) {
     const auto times = [](int wanted, int have) { return std::max(1, (wanted + have - 1) / have); };

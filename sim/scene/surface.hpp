@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,10 @@ enum class Shape {
   sphere,  ///< of diameter width_mm; the picture lies on it as on a disc seen from the front
   relief,  ///< a plane whose points stand out by `heights`
 };
+
+/// How much red, green and blue count; finite, of sum 1 for a mean.
+using BandWeights = std::array<double, 3>;
+inline constexpr BandWeights even_bands{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
 
 /// Something to see: a picture of its own resolution on a shape. Each of its pixels is a rectangle of even brightness;
 /// it is opaque and beyond its edge there is none of it.
@@ -31,6 +36,10 @@ struct Surface {
   bool shines = false;  ///< a display, to which Scene::display applies; else lit by Scene::light alone
 
   [[nodiscard]] const hal::Image& picture() const noexcept { return bands.front(); }
+  /// Sum of the bands times their weights; one band counts as all three.
+  [[nodiscard]] hal::Image weighed(const BandWeights& weights) const;
+  /// Mean of the bands: what is rendered.
+  [[nodiscard]] hal::Image grey() const;
 };
 
 }  // namespace compueye::sim
