@@ -174,9 +174,8 @@ Check length_mm() {
 Check one_of(std::vector<std::string_view> known) {
   return [known = std::move(known)](const std::string& text) {
     if (std::find(known.begin(), known.end(), text) != known.end()) return std::string();
-    const auto near = nearest_name(text, known);
     return fmt::format("is '{}', expected one of {}{}", excerpt(text), fmt::join(known, ", "),
-                       near ? fmt::format("; did you mean '{}'?", *near) : "");
+                       did_you_mean(text, known));
   };
 }
 

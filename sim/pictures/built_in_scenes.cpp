@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <string>
 #include <vector>
 
+#include "hal/nearest_name.hpp"
 #include "sim/pictures/pictures.hpp"
 
 namespace compueye::sim {
@@ -60,29 +60,16 @@ constexpr auto listed = [] {
   return scenes;
 }();
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
-
 tl::unexpected<hal::Error> unknown(std::string_view name) {
-  const auto nearest = std::min_element(listed.begin(), listed.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(a.name, name) < edit_distance(b.name, name);
-  });
+  std::vector<std::string_view> names;
   std::string known;
-  for (const BuiltInScene& scene : listed) known += (known.empty() ? "" : ", ") + std::string(scene.name);
-  return fail(ErrorCode::not_found, "scene",
-              "'" + std::string(name) + "' is not a built-in scene; did you mean '" + std::string(nearest->name) +
-                  "'? Known are " + known);
+  for (const BuiltInScene& scene : listed) {
+    names.push_back(scene.name);
+    known += (known.empty() ? "" : ", ") + std::string(scene.name);
+  }
+  return fail(
+      ErrorCode::not_found, "scene",
+      "'" + std::string(name) + "' is not a built-in scene, expected one of " + known + hal::did_you_mean(name, names));
 }
 
 }  // namespace

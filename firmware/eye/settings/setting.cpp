@@ -316,9 +316,7 @@ hal::Result<SettingValue> value_from(const Setting& setting, std::string_view te
   const auto* number = value ? std::get_if<double>(&*value) : nullptr;
   std::string sentence = fmt::format("is '{}', expected {}", excerpt(text),
                                      typed_expectation(setting, number ? std::optional(*number) : std::nullopt));
-  if (setting.type == SettingType::choice) {
-    if (const auto near = nearest_name(text, setting.choices)) sentence += fmt::format("; did you mean '{}'?", *near);
-  }
+  if (setting.type == SettingType::choice) sentence += did_you_mean(text, setting.choices);
   return hal::fail(ErrorCode::usage, std::string(place), std::move(sentence));
 }
 
