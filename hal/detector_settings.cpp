@@ -31,6 +31,10 @@ Result<void> needs(bool is, std::string_view field, std::string_view other) {
               "means nothing without " + std::string(other) + "; state that, or leave it out");
 }
 
+int converters(int channels, int each) noexcept {
+  return (channels + each - 1) / each;
+}
+
 }  // namespace
 
 double DetectorSettings::mux_memory() const noexcept {
@@ -39,6 +43,20 @@ double DetectorSettings::mux_memory() const noexcept {
 
 double DetectorSettings::scan_s() const noexcept {
   return mux_channels > 1 ? (mux_channels - 1) * mux_slot_us * 1e-6 : 0.0;
+}
+
+int DetectorSettings::slot(int channel, int channels) const noexcept {
+  if (mux_channels < 2) return 0;
+  return mux_order == MuxOrder::neighbours ? channel % mux_channels : channel / converters(channels, mux_channels);
+}
+
+double DetectorSettings::turn(int channel, int channels) const noexcept {
+  return mux_channels > 1 ? static_cast<double>(slot(channel, channels)) / (mux_channels - 1) : 0.0;
+}
+
+std::optional<int> DetectorSettings::read_before(int channel, int channels) const noexcept {
+  if (slot(channel, channels) == 0) return std::nullopt;
+  return channel - (mux_order == MuxOrder::neighbours ? 1 : converters(channels, mux_channels));
 }
 
 Result<void> DetectorSettings::validate(int channels) const {

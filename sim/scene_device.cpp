@@ -30,11 +30,10 @@ protocol::DeviceDescriptor describe_device(const EyeToSimulate& board, const std
   descriptor.ommatidium_of_channel.resize(channels);
   std::iota(descriptor.ommatidium_of_channel.begin(), descriptor.ommatidium_of_channel.end(), 0);
   descriptor.sample_offset_ns.assign(channels, 0);
-  const int turns = board.detector.mux_channels;
-  for (std::size_t m = 0; m < channels && turns > 1; ++m) {
-    const auto turn = static_cast<double>(m % static_cast<std::size_t>(turns));
-    descriptor.sample_offset_ns[m] = static_cast<std::int32_t>(
-        std::min(turn * board.detector.mux_slot_us * 1e3, double{protocol::DeviceDescriptor::most_offset_ns}));
+  for (int m = 0; m < descriptor.channels; ++m) {
+    const double offset_ns = board.detector.slot(m, descriptor.channels) * board.detector.mux_slot_us * 1e3;
+    descriptor.sample_offset_ns[static_cast<std::size_t>(m)] =
+        static_cast<std::int32_t>(std::min(offset_ns, double{protocol::DeviceDescriptor::most_offset_ns}));
   }
   return descriptor;
 }

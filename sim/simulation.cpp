@@ -155,9 +155,8 @@ hal::Result<Simulation> Simulation::create(EyeToSimulate board, Scene scene, std
   const auto channels = static_cast<std::size_t>(p.board.eye.ommatidia());
   for (auto* each : {&p.signals, &p.render, &p.levels, &p.channel_turn}) each->resize(channels);
   p.stuck.resize(channels);
-  const int taking_turns = std::max(p.board.detector.mux_channels, 1);
-  for (std::size_t m = 0; m < channels && taking_turns > 1; ++m) {
-    p.channel_turn[m] = static_cast<double>(m % static_cast<std::size_t>(taking_turns)) / (taking_turns - 1);
+  for (std::size_t m = 0; m < channels; ++m) {
+    p.channel_turn[m] = p.board.detector.turn(static_cast<int>(m), p.board.eye.ommatidia());
   }
   p.expose(0);
   return Simulation(std::move(parts));

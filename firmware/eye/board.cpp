@@ -120,6 +120,7 @@ hal::Result<void> check_needs(const Board& board) {
   const hal::DetectorSettings& detector = board.detector;
   for (const Need& need : {Need{"build", "edge_order", build.profile == hal::ProfileKind::soft, "profile = \"soft\""},
                            Need{"build", "dust_loss", build.dust_share > 0.0, "dust_share"},
+                           Need{"sensor", "mux_order", detector.mux_channels > 1, "mux_channels"},
                            Need{"sensor", "mux_time_constant_us", detector.mux_channels > 1, "mux_channels"},
                            Need{"sensor", "hot_lsb", !detector.hot.empty(), "hot"}}) {
     if (need.met || !board.states(need.section, need.key)) continue;

@@ -33,8 +33,6 @@ struct Preview {
   double mean = 0.0, rms = 0.0;  ///< over the channels
   double largest = 0.0;          ///< of all levels
   double neighbour_rms = 0.0;    ///< of a level minus the mean of its (up to four) neighbours
-  double previous_rms = 0.0;     ///< of a level minus that of the channel before it in order
-  double previous_largest = 0.0;
   /// d level / d (mm that the scene moves) in x and y: rms and largest over the channels, the larger of the two.
   double gradient_rms = 0.0, gradient_largest = 0.0;
   double laplacian_rms = 0.0;  ///< of the second derivative by mm, the larger of x and y

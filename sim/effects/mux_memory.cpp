@@ -1,4 +1,7 @@
 #include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "sim/effects/effect_list.hpp"
 #include "sim/effects/estimates.hpp"
@@ -7,25 +10,43 @@
 namespace compueye::sim {
 namespace {
 
+/// Of a level less that of the channel which its converter read before, over all channels.
+double mean_square_step(const Circumstances& c) noexcept {
+  const std::vector<double>& levels = c.preview.levels;
+  const auto channels = static_cast<int>(levels.size());
+  double squares = 0.0;
+  for (int m = 0; m < channels; ++m) {
+    const auto before = c.board.detector.read_before(m, channels);
+    if (before) squares += std::pow(levels[static_cast<std::size_t>(m)] - levels[static_cast<std::size_t>(*before)], 2);
+  }
+  return squares / channels;
+}
+
 // The voltage that the converter reads is v_i = y_i + m (v_(i-1) - y_i), so v - y = sum over k >= 1 of m^k times the
 // step between channels i - k + 1 and i - k: rms at most m / (1 - m) that of the steps. First channels of a converter
-// have nothing before them, which the bound counts as if they had. Steps are of the scene and of the photons, whose
-// noise differs from channel to channel.
+// have nothing before them. Steps are of the scene and of the photons, whose noise differs from channel to channel.
 double bound(const Circumstances& c) {
   const double memory = c.board.detector.mux_memory(), electrons = c.board.detector.electrons_per_lsb;
   const double shot_variance = electrons > 0.0 ? c.preview.mean / electrons : 0.0;
-  const double step = std::sqrt(c.preview.previous_rms * c.preview.previous_rms + 2.0 * shot_variance);
+  const double step = std::sqrt(mean_square_step(c) + 2.0 * shot_variance);
   return margin * memory / (1.0 - memory) * step;
 }
 
 void apply(const Circumstances& c, Workings& w) {
   const double memory = c.board.detector.mux_memory();
-  const auto channels = static_cast<std::size_t>(c.board.detector.mux_channels);
-  if (!(memory > 0.0) || channels < 2) return;
-  add_step(w, [memory, channels](FrameInWork& frame) noexcept {
-    for (std::size_t m = 1; m < frame.levels_lsb.size(); ++m) {
-      if (m % channels == 0) continue;  // between frames a converter settles
-      frame.levels_lsb[m] += memory * (frame.levels_lsb[m - 1] - frame.levels_lsb[m]);
+  if (!(memory > 0.0)) return;
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  const int channels = c.board.eye.ommatidia();
+  std::vector<std::size_t> before(static_cast<std::size_t>(channels), none);
+  for (int m = 0; m < channels; ++m) {
+    const auto read = c.board.detector.read_before(m, channels);
+    if (read) before[static_cast<std::size_t>(m)] = static_cast<std::size_t>(*read);
+  }
+  // In ascending order, so that the channel before already is what its converter read; between frames it settles.
+  add_step(w, [memory, before = std::move(before)](FrameInWork& frame) noexcept {
+    for (std::size_t m = 0; m < before.size(); ++m) {
+      if (before[m] == none) continue;
+      frame.levels_lsb[m] += memory * (frame.levels_lsb[before[m]] - frame.levels_lsb[m]);
     }
   });
 }

@@ -90,7 +90,7 @@ void add_neighbours(const hal::EyeGeometry& eye, Preview& preview) {
     return preview
         .levels[static_cast<std::size_t>(i) * static_cast<std::size_t>(eye.columns) + static_cast<std::size_t>(k)];
   };
-  double squares = 0.0, before = 0.0;
+  double squares = 0.0;
   for (int i = 0; i < eye.rows; ++i) {
     for (int k = 0; k < eye.columns; ++k) {
       double sum = 0.0;
@@ -103,14 +103,7 @@ void add_neighbours(const hal::EyeGeometry& eye, Preview& preview) {
       if (count > 0) squares += std::pow(at(i, k) - sum / count, 2);
     }
   }
-  for (std::size_t m = 1; m < preview.levels.size(); ++m) {
-    const double step = preview.levels[m] - preview.levels[m - 1];
-    before += step * step;
-    preview.previous_largest = std::max(preview.previous_largest, std::fabs(step));
-  }
-  const auto channels = static_cast<double>(preview.levels.size());
-  preview.neighbour_rms = std::sqrt(squares / channels);
-  preview.previous_rms = std::sqrt(before / channels);
+  preview.neighbour_rms = std::sqrt(squares / static_cast<double>(preview.levels.size()));
 }
 
 /// By moving the scene to both sides. A relief takes longest and is as steep when it is pressed flat.

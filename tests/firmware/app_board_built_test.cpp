@@ -53,9 +53,11 @@ TEST_CASE("what is built and what is not stated are read") {
   CHECK(drawn->build.dust_loss == 0.3);
   CHECK(drawn->detector.temperature_c == 25.0);
   CHECK(drawn->detector.electrons_per_lsb == 0.0);
+  CHECK(drawn->detector.mux_order == hal::MuxOrder::neighbours);
 
   const auto built = parse_board(
       with("electrons_per_lsb = 20\nfull_well_e = 1e6\ndark_current_e_per_s = 50\nmux_channels = 8\nmux_slot_us = 2.5\n"
+           "mux_order = \"interleaved\"\n"
            "mux_time_constant_us = 0.3\nspectral_response = [1, 0.5, 0]\nhot = [9, 2]\nhot_lsb = 40\nstuck = [5]\n"
            "blinking = []\nintegration_ms = 4",
            "seed = 77\npose_rms_deg = 0.3\nprofile = \"soft\"\nedge_order = 6\ncoma = 0.1\ndust_share = 0.15"),
@@ -70,6 +72,7 @@ TEST_CASE("what is built and what is not stated are read") {
   CHECK(built->detector.electrons_per_lsb == 20.0);
   CHECK(built->detector.full_well_e == 1e6);
   CHECK(built->detector.mux_channels == 8);
+  CHECK(built->detector.mux_order == hal::MuxOrder::interleaved);
   CHECK(built->detector.mux_slot_us == 2.5);
   CHECK(built->detector.mux_time_constant_us == 0.3);
   CHECK(built->detector.spectral_response == std::array<double, 3>{1.0, 0.5, 0.0});
@@ -124,6 +127,8 @@ TEST_CASE("what is built cannot contradict itself or be ignored") {
            Case{"mux_channels = 81\nmux_slot_us = 1", "", 19, {"mux_channels", "80"}, ErrorCode::out_of_range},
            Case{"mux_slot_us = 4", "", 19, {"mux_slot_us", "mux_channels"}, ErrorCode::mismatch},
            Case{"mux_time_constant_us = 4", "", 19, {"mux_time_constant_us", "mux_channels"}, ErrorCode::mismatch},
+           Case{"mux_order = \"interleaved\"", "", 19, {"mux_order", "mux_channels"}, ErrorCode::mismatch},
+           Case{"mux_order = \"interlaced\"", "", 19, {"mux_order", "interleaved"}, ErrorCode::not_found},
            Case{"mux_channels = 80\nmux_slot_us = 100", "", 20, {"mux_slot_us", "7.9", "200"}, ErrorCode::mismatch},
            Case{"integration_ms = 5.1", "", 19, {"integration_ms", "5.1", "200"}, ErrorCode::mismatch},
            Case{"hot_lsb = 3", "", 19, {"hot_lsb", "hot"}, ErrorCode::mismatch},

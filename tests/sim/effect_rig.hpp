@@ -39,9 +39,6 @@ struct EffectRig {
       preview.largest = std::max(preview.largest, level);
     }
     preview.rms = std::sqrt(squares);
-    double steps = 0.0;
-    for (std::size_t m = 1; m < levels.size(); ++m) steps += std::pow(levels[m] - levels[m - 1], 2);
-    preview.previous_rms = std::sqrt(steps / static_cast<double>(levels.size()));
     preview.levels = std::move(levels);
   }
 

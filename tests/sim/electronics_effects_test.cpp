@@ -45,6 +45,27 @@ TEST_CASE("the multiplexer keeps a share of the channel before, along a converte
   CHECK(rig.bound("mux_memory") <= 10.0 * truth);
 }
 
+TEST_CASE("interleaved channels keep a share of the one that their converter read before, not of their neighbour") {
+  EffectRig rig(1, 8, 0.0);
+  rig.board.detector.mux_channels = 4;
+  rig.board.detector.mux_order = hal::MuxOrder::interleaved;  // one converter has the even channels, one the odd
+  rig.board.detector.mux_slot_us = 3.0;
+  rig.board.detector.mux_time_constant_us = 3.0 / std::log(10.0);
+  std::vector<double> levels(8, 0.0);
+  levels[1] = 1000.0;
+  levels[4] = 500.0;
+  rig.look_at(levels);
+  const std::vector<double> expected{0.0, 1000.0, 0.0, 100.0, 450.0, 10.0, 45.0, 1.0};
+  const auto played = rig.played({"mux_memory"});
+  for (std::size_t m = 0; m < 8; ++m) CHECK(played[m] == doctest::Approx(expected[m]));
+  CHECK(rig.bound("mux_memory") >= rig.change({"mux_memory"}));
+  CHECK(rig.bound("mux_memory") <= 10.0 * rig.change({"mux_memory"}));
+  // Levels that repeat along a converter leave nothing to remember, however steep they are between neighbours.
+  rig.look_at({0.0, 1000.0, 0.0, 1000.0, 0.0, 1000.0, 0.0, 1000.0});
+  CHECK(rig.change({"mux_memory"}) == 0.0);
+  CHECK(rig.bound("mux_memory") == 0.0);
+}
+
 TEST_CASE("the converter bows by its INL in mid-scale and not at its ends") {
   EffectRig rig(1, 5);
   CHECK(rig.called("nonlinearity").empty());

@@ -9,6 +9,7 @@ namespace {
 
 using hal::BuildSettings;
 using hal::DetectorSettings;
+using hal::MuxOrder;
 using hal::ProfileKind;
 using V = SettingValue;
 
@@ -17,6 +18,12 @@ using V = SettingValue;
 std::span<const recon::Named<ProfileKind>> profiles() {
   static constexpr std::array<recon::Named<ProfileKind>, 3> names{
       {{"flat-top", ProfileKind::flat_top}, {"soft", ProfileKind::soft}, {"airy", ProfileKind::airy}}};
+  return names;
+}
+
+std::span<const recon::Named<MuxOrder>> mux_orders() {
+  static constexpr std::array<recon::Named<MuxOrder>, 2> names{
+      {{"neighbours", MuxOrder::neighbours}, {"interleaved", MuxOrder::interleaved}}};
   return names;
 }
 
@@ -127,9 +134,12 @@ void add_electronics(std::vector<Setting>& all) {
            .within({-1e6, 1e6})
            .otherwise(V{0.0}),
        detector<&DetectorSettings::mux_channels>("mux_channels",
-                                                 "neighbours that share a converter, read in turn; 0 or 1: none do")
+                                                 "channels that share a converter, read in turn; 0 or 1: none do")
            .within({0, 65536})
            .otherwise(0),
+       choice_field<mux_orders, &Board::detector, &DetectorSettings::mux_order>(
+           "mux_order", "which channels share one: neighbours m, m + 1, ..; interleaved m, m + C, .. of C converters")
+           .otherwise("neighbours"),
        detector<&DetectorSettings::mux_slot_us>("mux_slot_us", "time of one channel at its converter, microseconds")
            .within({0, 1e6})
            .otherwise(V{0.0}),
