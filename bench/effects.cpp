@@ -10,7 +10,7 @@
 
 #include "bench/timing.hpp"
 #include "firmware/eye/board.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/text/table.hpp"
 #include "hal/try.hpp"

@@ -68,9 +68,7 @@ struct Simulation::Parts {
     return static_cast<double>(frame) * board.period_s();
   }
   /// The scene begins anew after its duration; lamps and sensors do not.
-  [[nodiscard]] double scene_s(std::uint64_t frame) const noexcept {
-    return scene.duration_s > 0.0 ? std::fmod(start_s(frame), scene.duration_s) : start_s(frame);
-  }
+  [[nodiscard]] double scene_s(std::uint64_t frame) const noexcept { return scene.own_time_s(start_s(frame)); }
 
   /// signals = the mean over the instants of the integration, which begins at `t_s`.
   void integrate(double t_s, std::span<double> into) {

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <type_traits>
 
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/settings/setting.hpp"
 #include "firmware/files/output_target.hpp"
 #include "firmware/text/number_text.hpp"

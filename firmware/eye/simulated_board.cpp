@@ -36,14 +36,13 @@ hal::Result<std::vector<float>> one_frame(const Board& narrow, const sim::Scene&
 
 }  // namespace
 
+sim::EyeToSimulate eye_to_simulate(const Board& board) {
+  return {board.eye, board.object, board.build, board.sensor, board.detector, board.source.frame_rate_hz};
+}
+
 sim::SimulatedEyeSettings simulated_eye_settings(const Board& board, sim::Scene scene, std::uint64_t seed) {
   sim::SimulatedEyeSettings settings;
-  settings.board.eye = board.eye;
-  settings.board.object = board.object;
-  settings.board.build = board.build;
-  settings.board.sensor = board.sensor;
-  settings.board.detector = board.detector;
-  settings.board.frame_rate_hz = board.source.frame_rate_hz;
+  settings.board = eye_to_simulate(board);
   settings.scenes.push_back(std::move(scene));
   settings.seed = seed;
   settings.fifo_frames = board.source.fifo_frames;

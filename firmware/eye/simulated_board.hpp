@@ -13,6 +13,9 @@
 
 namespace compueye::firmware {
 
+/// What a simulation needs to know of a board.
+[[nodiscard]] sim::EyeToSimulate eye_to_simulate(const Board& board);
+
 /// The simulated eye of a board, unpaced: set frame_rate_hz for a live one. Dead channels are invalid from the first
 /// frame on.
 [[nodiscard]] sim::SimulatedEyeSettings simulated_eye_settings(const Board& board, sim::Scene scene,

@@ -1,5 +1,6 @@
 #include "sim/scene/scene.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace compueye::sim {
@@ -9,6 +10,10 @@ bool Scene::still() const noexcept {
     if (!surface.motion.still()) return false;
   }
   return true;
+}
+
+double Scene::own_time_s(double start_s) const noexcept {
+  return duration_s > 0.0 ? std::fmod(start_s, duration_s) : start_s;
 }
 
 Scene scene_on(const hal::ObjectPlane& object, std::string name, hal::Image picture) {

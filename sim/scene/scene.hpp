@@ -46,6 +46,8 @@ struct Scene {
   std::map<std::string, Forced> effects = {};  ///< by an effect's name: what is not the planner's to decide
 
   [[nodiscard]] bool still() const noexcept;
+  /// Its own time at `start_s` seconds after it was first shown, >= 0: that since it last began anew.
+  [[nodiscard]] double own_time_s(double start_s) const noexcept;
   /// Its duration, or the first hour of a scene that goes on for ever.
   [[nodiscard]] double seconds_to_judge() const noexcept;
 };

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "hal/sample_block.hpp"
 #include "hal/sample_source.hpp"

@@ -7,7 +7,7 @@
 
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/picture_quality.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/text/figures.hpp"
 #include "hal/clock.hpp"
 #include "hal/image.hpp"

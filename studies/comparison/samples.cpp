@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "calib/nominal.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/response_file.hpp"
 #include "firmware/operating_points/deadline_choice.hpp"

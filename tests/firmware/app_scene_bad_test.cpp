@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "firmware/eye/board.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/files/png.hpp"
 #include "tests/firmware/app_board_text.hpp"
 #include "tests/firmware/app_scene_text.hpp"

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/scene/scene_file.hpp"
 #include "firmware/eye/scene/scene_settings.hpp"
-#include "firmware/eye/scene_choice.hpp"
 #include "firmware/files/png.hpp"
 #include "tests/firmware/app_board_text.hpp"
 #include "tests/firmware/app_scene_text.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "firmware/eye/board.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/plan/preview.hpp"

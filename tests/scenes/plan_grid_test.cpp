@@ -15,7 +15,7 @@
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/planned_eye.hpp"
 #include "firmware/eye/ready_eye.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "hal/clock.hpp"
 #include "recon/aligned_workspace.hpp"

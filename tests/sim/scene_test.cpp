@@ -82,6 +82,16 @@ TEST_CASE("the truth is black beyond a small scene and cuts a large one") {
   for (const float pixel : grey.pixels) CHECK(pixel == doctest::Approx(0.25));
 }
 
+TEST_CASE("a scene begins anew after its duration, or goes on for ever") {
+  sim::Scene scene = sim::scene_on(hal::ObjectPlane{}, "white", hal::Image(1, 1, 1.0F));
+  CHECK(scene.own_time_s(1e5) == 1e5);
+  scene.duration_s = 2.5;
+  for (const auto& [start_s, own_s] :
+       {std::pair{0.0, 0.0}, std::pair{2.25, 2.25}, std::pair{2.5, 0.0}, std::pair{8.0, 0.5}}) {
+    CHECK(scene.own_time_s(start_s) == own_s);
+  }
+}
+
 TEST_CASE("a scene that cannot be shown is refused with its name and the offending value") {
   const hal::ObjectPlane object;
   const auto refused = [&](const sim::Scene& scene, ErrorCode code, const test::Named& named) {

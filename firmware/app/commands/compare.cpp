@@ -10,7 +10,7 @@
 
 #include "firmware/app/command.hpp"
 #include "firmware/eye/board.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "hal/try.hpp"
 #include "recon/solver_list.hpp"

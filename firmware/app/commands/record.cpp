@@ -11,7 +11,7 @@
 #include "firmware/app/command.hpp"
 #include "firmware/app/commands/run_source.hpp"
 #include "firmware/eye/board.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/source_list.hpp"
 #include "hal/try.hpp"
 

@@ -18,7 +18,7 @@
 #include "firmware/app/commands/run_source.hpp"
 #include "firmware/app/option_list.hpp"
 #include "firmware/eye/ready_eye.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/operating_points/deadline_choice.hpp"

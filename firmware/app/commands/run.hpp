@@ -7,7 +7,7 @@
 #include "drivers/recording/replay_source.hpp"
 #include "firmware/app/option_list.hpp"
 #include "firmware/app/session.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {

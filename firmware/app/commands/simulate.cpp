@@ -14,7 +14,7 @@
 #include "firmware/app/command.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/planned_eye.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/atomic_file.hpp"
 #include "firmware/files/npy.hpp"

@@ -1,7 +1,6 @@
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -9,6 +8,7 @@
 
 #include "firmware/eye/scene/scene_file.hpp"
 #include "firmware/eye/scene/scene_pictures.hpp"
+#include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/png.hpp"
 #include "hal/try.hpp"
 #include "sim/effects/effect.hpp"
@@ -62,11 +62,9 @@ hal::Result<sim::Scene> choose_scene(const Board& board, const SceneChoice& choi
 }
 
 hal::Result<hal::Image> truth_of_frame(const Board& board, const sim::Scene& scene, std::uint64_t frame) {
-  const double period_s = 1.0 / board.source.frame_rate_hz;
-  const double start_s = static_cast<double>(frame) * period_s;
-  const double exposure_s = board.detector.integration_ms > 0.0 ? board.detector.integration_ms * 1e-3 : period_s;
-  const double anew_s = scene.duration_s > 0.0 ? std::fmod(start_s, scene.duration_s) : start_s;
-  return sim::scene_truth(scene, board.object, anew_s + exposure_s / 2.0);
+  const sim::EyeToSimulate eye = eye_to_simulate(board);
+  const double start_s = static_cast<double>(frame) * eye.period_s();
+  return sim::scene_truth(scene, board.object, scene.own_time_s(start_s) + eye.integration_s() / 2.0);
 }
 
 std::string built_in_scene_help() {

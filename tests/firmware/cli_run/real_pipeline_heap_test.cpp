@@ -4,7 +4,7 @@
 
 #include "firmware/app/commands/frame_keeper.hpp"
 #include "firmware/eye/ready_eye.hpp"
-#include "firmware/eye/scene_choice.hpp"
+#include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/pipeline/pipeline.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
