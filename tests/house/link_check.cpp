@@ -21,7 +21,7 @@ constexpr std::array<NeverReaches, 5> never{{
     {"recon/core", "Eigen Spectra xxhash libpng toml++ CLI11 fmt nlohmann-json sqlite libusb hidapi libgpiod"},
     {"sim", "libusb hidapi libgpiod sqlite Eigen"},
     {"firmware/pipeline", "sqlite libusb hidapi libgpiod libpng toml++"},
-    {"calib", "libusb hidapi libgpiod"},
+    {"calib", "libusb hidapi libgpiod sqlite"},
 }};
 
 constexpr std::string_view of_the_system = "Threads::Threads compueye_flags m dl rt";
