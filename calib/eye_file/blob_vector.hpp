@@ -7,11 +7,11 @@
 
 namespace compueye::calib {
 
-/// The whole numbers of a kind that a blob holds.
+/// The numbers of a kind that a blob holds. Bytes left over make one more, so that a record's hash notices them.
 template <class T>
 [[nodiscard]] std::vector<T> vector_of(std::span<const std::byte> blob) {
-  std::vector<T> values(blob.size() / sizeof(T));
-  if (!values.empty()) std::memcpy(values.data(), blob.data(), values.size() * sizeof(T));
+  std::vector<T> values((blob.size() + sizeof(T) - 1) / sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), blob.data(), blob.size());
   return values;
 }
 

@@ -138,18 +138,19 @@ hal::Result<void> Database::execute(std::string_view sql) const {
   return {};
 }
 
+// Both go on to the end, where a statement commits what it has changed.
 hal::Result<std::int64_t> Database::integer_of(std::string_view sql) const {
   auto statement = TRY(prepare(sql));
-  return TRY(statement.step()) ? statement.integer(0) : 0;
+  const std::int64_t value = TRY(statement.step()) ? statement.integer(0) : 0;
+  TRY(statement.run());
+  return value;
 }
 
 hal::Result<std::string> Database::text_of(std::string_view sql) const {
   auto statement = TRY(prepare(sql));
-  return TRY(statement.step()) ? statement.text(0) : std::string();
-}
-
-std::int64_t Database::last_row_id() const noexcept {
-  return sqlite3_last_insert_rowid(database_.get());
+  std::string value = TRY(statement.step()) ? statement.text(0) : std::string();
+  TRY(statement.run());
+  return value;
 }
 
 hal::Result<Transaction> Transaction::begin(const Database& database, std::string_view begin) {

@@ -33,7 +33,7 @@ class Statement {
 
   /// Whether there is a (next) row.
   [[nodiscard]] hal::Result<bool> step();
-  /// To the end, whatever rows there are.
+  /// To the end, whatever rows are left.
   [[nodiscard]] hal::Result<void> run();
   /// Lets go of the row, and with it of the lock for reading.
   void reset() noexcept;
@@ -86,7 +86,6 @@ class Database {
   /// The first column of the first row.
   [[nodiscard]] hal::Result<std::int64_t> integer_of(std::string_view sql) const;
   [[nodiscard]] hal::Result<std::string> text_of(std::string_view sql) const;
-  [[nodiscard]] std::int64_t last_row_id() const noexcept;
 
  private:
   friend class Transaction;

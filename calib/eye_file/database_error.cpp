@@ -1,4 +1,5 @@
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -19,19 +20,15 @@ struct Meaning {
   std::string_view sentence;
 };
 
+constexpr std::string_view cut_off =
+    "was left by a session that was cut off, and a reader cannot repair it; open it once for writing, in a folder that "
+    "may be written (compueye calibrate --resume)";
+
 // The first that fits; those with an extension come before theirs without.
 constexpr std::array<Meaning, 15> meanings{{
-    {SQLITE_READONLY_ROLLBACK, ErrorCode::io,
-     "was left in the middle of a write and cannot be repaired by a reader; open it once for writing, where it may be "
-     "written (compueye calibrate --resume)"},
-    {SQLITE_READONLY_RECOVERY, ErrorCode::io,
-     "was left open by a session that was cut off and cannot be repaired by a reader; open it once for writing, where "
-     "it "
-     "may be written (compueye calibrate --resume)"},
-    {SQLITE_READONLY_CANTINIT, ErrorCode::io,
-     "was left open by a session that was cut off and cannot be repaired by a reader; open it once for writing, where "
-     "it "
-     "may be written (compueye calibrate --resume)"},
+    {SQLITE_READONLY_ROLLBACK, ErrorCode::io, cut_off},
+    {SQLITE_READONLY_RECOVERY, ErrorCode::io, cut_off},
+    {SQLITE_READONLY_CANTINIT, ErrorCode::io, cut_off},
     {SQLITE_READONLY, ErrorCode::io,
      "cannot be written: the file, its folder or its file system is read-only; check who owns it, or copy it to where "
      "it "
@@ -56,6 +53,9 @@ constexpr std::array<Meaning, 15> meanings{{
 }  // namespace
 
 hal::Error database_error(const std::string& path, int result_code, sqlite3* database) {
+  // A log that was left, and no leave to make the index that reading it takes.
+  const bool log_is_there = !path.empty() && ::access((path + "-wal").c_str(), F_OK) == 0;
+  if ((result_code & 0xFF) == SQLITE_CANTOPEN && log_is_there) result_code = SQLITE_READONLY_CANTINIT;
   const std::string place = path.empty() ? "eye file" : path;
   const auto found = std::find_if(meanings.begin(), meanings.end(), [&](const Meaning& meaning) {
     return meaning.result_code == result_code || meaning.result_code == (result_code & 0xFF);

@@ -34,13 +34,18 @@ EyeFile::~EyeFile() {
 
 Result<EyeFile> EyeFile::create(const std::string& path, const EyeIdentity& eye) {
   TRY(check_eye(path, eye));
-  TRY(make_empty_file(path));
-  EyeFile file(path, EyeFileMode::write, std::make_unique<Database>(TRY(open_database(path, true))));
+  const bool is_new = TRY(make_file(path));
+  if (!is_new) {
+    const auto usable = check_file(path);
+    if (!usable && usable.error().code != ErrorCode::bad_format) return tl::unexpected(usable.error());
+  }
+  auto database = open_database(path, true);
+  if (!database && database.error().code == ErrorCode::bad_format) return already_there(path);
+  if (!database) return tl::unexpected(std::move(database.error()));
+  EyeFile file(path, EyeFileMode::write, std::make_unique<Database>(std::move(*database)));
   {
     auto transaction = TRY(Transaction::begin(*file.database_, "BEGIN EXCLUSIVE"));
-    if (TRY(file.database_->integer_of("SELECT count(*) FROM sqlite_schema")) != 0) {
-      return fail(ErrorCode::io, path, "was made by somebody else meanwhile; choose another name");
-    }
+    if (!TRY(has_nothing(*file.database_))) return already_there(path);
     TRY(make_schema(*file.database_));
     TRY(store_eye(*file.database_, eye));
     TRY(transaction.commit());

@@ -49,7 +49,8 @@ class CaptureReader {
 /// A call that failed has changed nothing, and may be made again.
 class EyeFile {
  public:
-  /// `path` must not exist, or be empty; opens it for writing.
+  /// There must be nothing at `path`, or a file with nothing in it, as a creation that was cut off leaves; opens it for
+  /// writing.
   [[nodiscard]] static hal::Result<EyeFile> create(const std::string& path, const EyeIdentity& eye);
   [[nodiscard]] static hal::Result<EyeFile> open(const std::string& path, EyeFileMode mode);
   EyeFile(EyeFile&&) noexcept;

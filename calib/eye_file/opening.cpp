@@ -27,6 +27,10 @@ tl::unexpected<hal::Error> refused(const std::string& path, std::string_view wha
       std::string(what) + ": " + std::generic_category().message(error_number) + "; check the path and who owns it");
 }
 
+tl::unexpected<hal::Error> empty(const std::string& path) {
+  return fail(ErrorCode::bad_format, path, "is empty, so it is no eye file; remove it, or make one of it");
+}
+
 void flush_folder_of(const std::string& path) {
   const auto slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
@@ -59,18 +63,22 @@ hal::Result<void> set_journal(const Database& database, const std::string& mode)
 
 }  // namespace
 
-hal::Result<void> make_empty_file(const std::string& path) {
+hal::Result<bool> make_file(const std::string& path) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (fd >= 0) {
-    ::close(fd);
-    flush_folder_of(path);
-    return {};
-  }
-  if (errno != EEXIST) return refused(path, "cannot be made", errno);
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return refused(path, "cannot be made", errno);
-  if (S_ISREG(status.st_mode) && status.st_size == 0) return {};
+  if (fd < 0 && errno == EEXIST) return false;
+  if (fd < 0) return refused(path, "cannot be made", errno);
+  ::close(fd);
+  flush_folder_of(path);
+  return true;
+}
+
+tl::unexpected<hal::Error> already_there(const std::string& path) {
   return fail(ErrorCode::io, path, "is there already and is never overwritten; choose another name or remove it");
+}
+
+hal::Result<bool> has_nothing(const Database& database) {
+  return TRY(database.integer_of("SELECT count(*) FROM sqlite_schema")) == 0 &&
+         TRY(database.integer_of("PRAGMA application_id")) == 0;
 }
 
 hal::Result<void> check_file(const std::string& path) {
@@ -79,7 +87,7 @@ hal::Result<void> check_file(const std::string& path) {
   if (S_ISDIR(status.st_mode)) return fail(ErrorCode::io, path, "is a folder; name an eye file");
   if (!S_ISREG(status.st_mode)) return fail(ErrorCode::io, path, "is a pipe or a device; name an eye file");
   if (status.st_size > 0) return {};
-  return fail(ErrorCode::bad_format, path, "is empty, so it is no eye file; remove it, or make one of it");
+  return empty(path);
 }
 
 hal::Result<Database> open_database(const std::string& path, bool for_writing) {
@@ -109,6 +117,7 @@ hal::Result<void> check_schema(const Database& database) {
   const Database ours = TRY(Database::open({}, true));
   TRY(make_schema(ours));
   const std::string& path = database.path();
+  if (TRY(has_nothing(database))) return empty(path);
   const auto application = TRY(database.integer_of("PRAGMA application_id"));
   if (application != TRY(ours.integer_of("PRAGMA application_id"))) {
     return fail(ErrorCode::bad_format, path,
@@ -136,7 +145,10 @@ hal::Result<void> start_log(const Database& database) {
 }
 
 hal::Result<void> end_log(const Database& database) {
-  return set_journal(database, "delete");
+  TRY(set_journal(database, "delete"));
+  // A reader that came after a writer was killed leaves its index of the log behind; nobody else can be using it now.
+  ::unlink((database.path() + "-shm").c_str());
+  return {};
 }
 
 }  // namespace compueye::calib

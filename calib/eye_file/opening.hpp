@@ -6,8 +6,11 @@
 
 namespace compueye::calib {
 
-/// Makes an empty file at `path`, known to the disk by its name; one that is there and empty will do. Errors: io.
-[[nodiscard]] hal::Result<void> make_empty_file(const std::string& path);
+/// Makes an empty file at `path`, known to the disk by its name: whether there was none before. Errors: not_found, io.
+[[nodiscard]] hal::Result<bool> make_file(const std::string& path);
+[[nodiscard]] tl::unexpected<hal::Error> already_there(const std::string& path);
+/// Whether there is nothing in it, as where its making was cut off.
+[[nodiscard]] hal::Result<bool> has_nothing(const Database& database);
 
 /// Whether there is something at `path` that may be an eye file. Errors: not_found, io (a folder, no regular file),
 /// bad_format (empty).

@@ -4,7 +4,6 @@
 
 #include <iterator>
 #include <string_view>
-
 #include "tests/hal/error_check.hpp"
 
 using namespace compueye;
