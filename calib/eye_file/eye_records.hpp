@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "calib/session/capture.hpp"
 #include "hal/channel_status.hpp"
 #include "hal/eye_geometry.hpp"
-#include "hal/sample_block.hpp"
 #include "recon/problem/response.hpp"
 
 /// What an eye file holds, as values. M is the number of ommatidia; channel m is ommatidium m = i * columns + k.
@@ -46,22 +46,6 @@ struct StoredSession {
   std::int64_t id = 0;
   Session begun;
   std::optional<SessionEnd> end;  ///< nothing: cut off, or under way
-};
-
-/// The samples under one pattern.
-struct Capture {
-  std::string stage;   ///< of the session: "dark", "response" ...
-  std::string family;  ///< calib::PatternFamily::name; empty: no light
-  std::uint64_t seed = 0;
-  std::int64_t pattern = 0;          ///< index in the family
-  int repeat = 0;                    ///< taken again this often before, >= 0
-  int frames = 1;                    ///< summed, >= 1
-  std::int64_t device_ns = 0;        ///< start of the first exposure, device clock
-  std::optional<double> exposure_s;  ///< of a frame
-  std::optional<double> temperature_c;
-  hal::BlockFlags flags;            ///< true where it was of any frame; time_ok where it was of all
-  std::vector<std::int32_t> codes;  ///< M raw codes, the sum over the frames
-  std::vector<std::uint8_t> valid;  ///< M, 0: the code means nothing; empty: all are valid
 };
 
 /// NaN: not determined.

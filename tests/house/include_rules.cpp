@@ -39,8 +39,8 @@ constexpr std::array<FolderRule, 26> rules{{
     {"sim", "hal drivers/protocol sim", none, false, none, false,
      "sim: hal and drivers/protocol, never recon or calib (it must not share a forward model with them)"},
 
-    {"calib/eye_file", "hal recon recon/core calib/eye_file", "sqlite xxhash", true, none, false,
-     "calib/eye_file: hal, recon's value types, SQLite, xxhash and OS headers"},
+    {"calib/eye_file", "hal recon recon/core calib/session/capture.hpp calib/eye_file", "sqlite xxhash", true, none, false,
+     "calib/eye_file: hal, recon's value types, the session's captures, SQLite, xxhash and OS headers"},
     {"calib", "hal recon recon/core calib", "Eigen", false, none, false,
      "calib: hal and recon (Eigen for estimators), never drivers, sim, firmware or the eye file's SQLite"},
 

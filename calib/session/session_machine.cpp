@@ -1,0 +1,289 @@
+#include "calib/session/session_machine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "hal/try.hpp"
+
+namespace compueye::calib {
+namespace {
+
+using hal::ErrorCode;
+using hal::fail;
+using hal::Result;
+
+constexpr int level_frames = 16;
+
+Wanted look(Stage stage, std::string_view family, int frames) {
+  Wanted wanted;
+  wanted.stage = stage;
+  wanted.family = family;
+  wanted.frames = frames;
+  return wanted;
+}
+
+double mean_code(const hal::SampleBlock& block) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t c = 0; c < block.codes.size(); ++c) {
+    if (block.valid[c] == 0) continue;
+    sum += block.codes[c];
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Of the channels that are valid in both.
+std::vector<double> difference(const Capture& light, const Capture& dark) {
+  std::vector<double> all;
+  for (std::size_t c = 0; c < light.codes.size(); ++c) {
+    if (light.valid[c] == 0 || dark.valid[c] == 0) continue;
+    all.push_back(static_cast<double>(light.codes[c]) / light.frames -
+                  static_cast<double>(dark.codes[c]) / dark.frames);
+  }
+  return all;
+}
+
+std::string rounded(double value) {
+  return std::to_string(std::llround(value));
+}
+
+std::int32_t largest_code(int bits) {
+  return (std::int32_t{1} << bits) - 1;
+}
+
+std::int32_t saturated_code(const SessionPlan& plan, int bits) {
+  return static_cast<std::int32_t>(std::ceil(plan.saturation_share * largest_code(bits)));
+}
+
+}  // namespace
+
+Result<SessionMachine> SessionMachine::create(const SessionPlan& plan, const SessionEye& eye, int rows, int cols,
+                                              const Resumed& resumed, std::int64_t now_ns) {
+  TRY(validate(plan));
+  if (eye.channels < 1 || eye.bits < 1 || eye.bits > 24) {
+    return fail(ErrorCode::out_of_range, "eye",
+                "has " + std::to_string(eye.channels) + " channels of " + std::to_string(eye.bits) +
+                    " bits, expected at least one, of 1 to 24 bits");
+  }
+  const int most = std::max({plan.frames, plan.ramp_frames, plan.reference_frames, level_frames});
+  const std::int64_t hold = std::numeric_limits<std::int32_t>::max() / (largest_code(eye.bits) + 1);
+  if (most > hold) {
+    return fail(ErrorCode::out_of_range, "plan",
+                "averages " + std::to_string(most) + " frames in a capture, expected at most " + std::to_string(hold) +
+                    " of " + std::to_string(eye.bits) + " bits: take more patterns instead");
+  }
+  return SessionMachine(plan, eye, capture_schedule(plan, rows, cols), resumed, now_ns);
+}
+
+SessionMachine::SessionMachine(const SessionPlan& plan, const SessionEye& eye, std::vector<Wanted> schedule,
+                               const Resumed& resumed, std::int64_t now_ns)
+    : plan_(plan),
+      eye_(eye),
+      schedule_(std::move(schedule)),
+      resumed_(resumed),
+      builder_(eye.channels, eye.configuration, saturated_code(plan, eye.bits),
+               static_cast<int>(plan.saturated_channels * eye.channels)),
+      began_ns_(now_ns),
+      position_(resumed.captures) {
+  begin(Phase::warm_up);
+}
+
+void SessionMachine::want(const Wanted& wanted) {
+  wanted_ = wanted;
+  need_ = Need::light;
+  builder_.begin(wanted, phase_ == Phase::level_dark || phase_ == Phase::level_white);
+}
+
+void SessionMachine::begin(Phase phase) {
+  phase_ = phase;
+  switch (phase) {
+    case Phase::warm_up:
+    case Phase::rising:
+      return want(look(Stage::flat, "all-on", 1));
+    case Phase::falling:
+      return want(look(Stage::black, "black", 1));
+    case Phase::level_dark:
+      return want(look(Stage::dark, {}, level_frames));
+    case Phase::level_white:
+      return want(look(Stage::flat, "all-on", level_frames));
+    case Phase::resume:
+      return want(look(Stage::resumed, "all-on", plan_.reference_frames));
+    case Phase::captures:
+      return;
+  }
+}
+
+void SessionMachine::want_capture(std::int64_t now_ns) {
+  if (phase_ != Phase::captures) captures_began_ns_ = now_ns;
+  begin(Phase::captures);
+  if (position_ >= static_cast<std::int64_t>(schedule_.size())) {
+    need_ = Need::nothing;
+    return;
+  }
+  want(schedule_[static_cast<std::size_t>(position_)]);
+}
+
+void SessionMachine::lit(std::int64_t now_ns, std::int64_t stable_ns) noexcept {
+  lit_ns_ = now_ns;
+  stable_ns_ = stable_ns;
+  need_ = Need::frame;
+  watch_.emplace(now_ns, std::max<std::int64_t>(static_cast<std::int64_t>(plan_.settle_ms * 1e6), stable_ns - now_ns));
+}
+
+Result<void> SessionMachine::saw_settling(std::int64_t begun_ns, const hal::SampleBlock& block) {
+  watch_->add(begun_ns, mean_code(block));
+  if (!watch_->complete()) return {};
+  const auto settled = watch_->settled_after_ns();
+  if (!settled) {
+    return fail(ErrorCode::out_of_range, "light",
+                "does not settle within " + rounded(plan_.settle_ms) +
+                    " ms of a change: wait until it is warm, keep other lamps away, or allow more with settle_ms");
+  }
+  settle_ns_ = std::max(settle_ns_, *settled);
+  begin(phase_ == Phase::falling ? Phase::rising : Phase::level_dark);
+  return {};
+}
+
+std::vector<double> SessionMachine::signal() const {
+  return difference(white_, dark_);
+}
+
+Result<void> SessionMachine::check_level() const {
+  const double full = largest_code(eye_.bits), end = saturated_code(plan_, eye_.bits);
+  int saturated = 0;
+  for (std::size_t c = 0; c < white_.codes.size(); ++c) {
+    saturated += white_.valid[c] != 0 && static_cast<double>(white_.codes[c]) / white_.frames >= end ? 1 : 0;
+  }
+  if (saturated > static_cast<int>(plan_.saturated_channels * eye_.channels)) {
+    return fail(ErrorCode::out_of_range, "light",
+                "saturates " + std::to_string(saturated) + " of " + std::to_string(eye_.channels) +
+                    " channels under white: dim the display or shorten the integration, or allow more with "
+                    "saturated_channels");
+  }
+  const double level = median_of(signal());
+  if (level >= plan_.least_signal_lsb) return {};
+  return fail(ErrorCode::out_of_range, "light",
+              "gives the median channel " + rounded(level) + " LSB of " + rounded(full) +
+                  " under white, expected at least " + rounded(plan_.least_signal_lsb) +
+                  ": is the display on and before the eye? Else brighten it or lengthen the integration");
+}
+
+Result<void> SessionMachine::check_reference() const {
+  if (!resumed_.reference) return {};
+  std::vector<double> now = difference(builder_.capture(), dark_), before = difference(*resumed_.reference, dark_);
+  if (now.size() != before.size() || now.empty()) {
+    return fail(ErrorCode::mismatch, "reference",
+                "has other valid channels than before the interruption: is it the same eye? Begin a new session");
+  }
+  double changed = 0.0, whole = 0.0;
+  for (std::size_t c = 0; c < now.size(); ++c) {
+    changed += std::fabs(now[c] - before[c]);
+    whole += std::fabs(before[c]);
+  }
+  if (changed <= plan_.reference_change * whole) return {};
+  return fail(ErrorCode::mismatch, "reference",
+              "has changed by " + rounded(100.0 * changed / std::max(whole, 1.0)) +
+                  " % since before the interruption, expected at most " + rounded(100.0 * plan_.reference_change) +
+                  " %: put eye, display and light back as they were, or begin a new session");
+}
+
+Result<void> SessionMachine::taken_too_often() const {
+  const Rejection why = builder_.last_rejection();
+  const std::string begun = "capture " + std::to_string(position_) + " was taken again " +
+                            std::to_string(builder_.retakes()) + " times (" + std::string(name(why)) + "): ";
+  const std::string place(name(wanted_.stage));
+  switch (why) {
+    case Rejection::saturated:
+      return fail(ErrorCode::out_of_range, place, begun + "dim the light or shorten the integration");
+    case Rejection::configuration:
+      return fail(ErrorCode::mismatch, place, begun + "its settings changed meanwhile: leave it alone, and resume");
+    case Rejection::gap:
+    case Rejection::overrun:
+      return fail(ErrorCode::io, place, begun + "see to the cable and the load of this machine, and resume");
+  }
+  return {};
+}
+
+Result<void> SessionMachine::saw_capture(const hal::SampleBlock& block, std::int64_t now_ns) {
+  if (!builder_.add(block)) {
+    if (builder_.retakes() <= plan_.most_retakes) return {};
+    return taken_too_often();
+  }
+  switch (phase_) {
+    case Phase::level_dark:
+      dark_ = builder_.capture();
+      begin(Phase::level_white);
+      return {};
+    case Phase::level_white:
+      white_ = builder_.capture();
+      signal_lsb_ = median_of(signal());
+      TRY(check_level());
+      if (resumed_.captures > 0) {
+        begin(Phase::resume);
+      } else {
+        want_capture(now_ns);
+      }
+      return {};
+    case Phase::resume:
+      TRY(check_reference());
+      want_capture(now_ns);
+      return {};
+    default:
+      need_ = Need::commit;
+      return {};
+  }
+}
+
+Result<void> SessionMachine::saw(const hal::SampleBlock& block, std::int64_t now_ns) {
+  const std::int64_t begun_ns = frame_time_.begun_ns(block.t_ns, block.flags.time_ok, now_ns);
+  if (phase_ == Phase::warm_up) {
+    if (now_ns - began_ns_ >= static_cast<std::int64_t>(plan_.warm_up_s * 1e9)) begin(Phase::falling);
+    return {};
+  }
+  if (phase_ == Phase::falling || phase_ == Phase::rising) return saw_settling(begun_ns, block);
+  if (begun_ns < std::max(stable_ns_, lit_ns_ + settle_ns_)) return {};
+  return saw_capture(block, now_ns);
+}
+
+void SessionMachine::committed(std::int64_t now_ns) noexcept {
+  ++position_;
+  if (position_ < static_cast<std::int64_t>(schedule_.size()) &&
+      same_light(schedule_[static_cast<std::size_t>(position_)], wanted_)) {
+    wanted_ = schedule_[static_cast<std::size_t>(position_)];
+    builder_.begin(wanted_);
+    need_ = Need::frame;
+    return;
+  }
+  want_capture(now_ns);
+}
+
+SessionProgress SessionMachine::progress(std::int64_t now_ns) const {
+  SessionProgress p;
+  p.stage = phase_ == Phase::captures  ? name(wanted_.stage)
+            : phase_ == Phase::warm_up ? "warm-up"
+                                       : "looking at the light";
+  p.taken = position_;
+  p.of = static_cast<std::int64_t>(schedule_.size());
+  for (std::size_t k = 0; k < rejections; ++k) p.rejected[k] = builder_.rejected(static_cast<Rejection>(k));
+  p.signal_lsb = signal_lsb_;
+  p.settle_ms = static_cast<double>(settle_ns_) * 1e-6;
+  const std::int64_t here = position_ - resumed_.captures;
+  if (phase_ == Phase::captures && here > 0) {
+    p.seconds_left = static_cast<double>(now_ns - captures_began_ns_) * 1e-9 / static_cast<double>(here) *
+                     static_cast<double>(p.of - p.taken);
+  }
+  return p;
+}
+
+}  // namespace compueye::calib

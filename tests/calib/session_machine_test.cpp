@@ -1,0 +1,287 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "calib/patterns/pattern_family.hpp"
+#include "calib/session/session_machine.hpp"
+#include "tests/hal/error_check.hpp"
+
+using namespace compueye;
+using calib::Need;
+using calib::Stage;
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr int side = 8, channels = 16;
+
+/// An eye of 16 channels, each seeing four rows of pixels beside each other, behind a light that takes its time, on a
+/// clock of its own.
+struct Bench {
+  calib::SessionPlan plan;
+  std::int64_t now_ns = 5 * ms, period_ns = 2 * ms, light_delay_ns = 30 * ms, way_ns = 3 * ms;
+  double gain = 100.0, dark = 40.0, display_black = 0.01;
+  std::uint64_t frame = 0;
+  hal::Image shown;  // as seen from changed_ns on; empty: no light
+  hal::Image before;
+  std::int64_t changed_ns = 0;
+  std::vector<std::int32_t> codes = std::vector<std::int32_t>(channels, 0);
+  std::vector<std::uint8_t> valid = std::vector<std::uint8_t>(channels, 1);
+  std::vector<calib::Capture> stored;
+  std::function<void(hal::SampleBlock&)> spoil;  // what happens to a frame on its way
+
+  Bench() {
+    plan.warm_up_s = 0.1;
+    plan.dark_frames = plan.black_frames = plan.flat_frames = 4;
+    plan.ramp_steps = 2;
+    plan.ramp_frames = 2;
+    plan.patterns = 40;
+    plan.settle_ms = 100;
+    plan.least_signal_lsb = 50;
+  }
+
+  [[nodiscard]] double light_of(const hal::Image& picture, int channel) const {
+    if (picture.rows == 0) return 0.0;
+    double sum = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      const int pixel = channel * 4 + k;
+      sum +=
+          static_cast<double>(picture.pixels[static_cast<std::size_t>(pixel)]) * (1.0 - display_black) + display_black;
+    }
+    return gain * sum;
+  }
+
+  void show(const calib::Wanted& wanted) {
+    before = shown;
+    shown = calib::picture_of(wanted, side, side).value();
+    changed_ns = now_ns + light_delay_ns;
+  }
+
+  /// The next frame, read when its exposure is over and it has come.
+  hal::SampleBlock read() {
+    const std::int64_t begun = now_ns;
+    for (int c = 0; c < channels; ++c) {
+      codes[static_cast<std::size_t>(c)] =
+          static_cast<std::int32_t>(std::min(dark + light_of(begun >= changed_ns ? shown : before, c), 4095.0));
+    }
+    now_ns += period_ns;
+    hal::SampleBlock block;
+    block.codes = codes;
+    block.valid = valid;
+    block.bits = 12;
+    block.frame = frame++;
+    block.t_ns = begun + 1000 * ms;
+    if (spoil) spoil(block);
+    return block;
+  }
+
+  hal::Result<void> drive(calib::SessionMachine& machine, std::int64_t most_commits = 1'000'000) {
+    while (machine.need() != Need::nothing && most_commits > 0) {
+      if (machine.need() == Need::light) {
+        show(machine.wanted());
+        machine.lit(now_ns, now_ns + ms);  // which the light is wrong about
+      } else if (machine.need() == Need::frame) {
+        const auto block = read();
+        const auto seen = machine.saw(block, now_ns + way_ns);
+        if (!seen) return seen;
+      } else {
+        stored.push_back(machine.capture());
+        machine.committed(now_ns);
+        --most_commits;
+      }
+    }
+    return {};
+  }
+
+  calib::SessionMachine machine(const calib::Resumed& resumed = {}) {
+    return calib::SessionMachine::create(plan, {channels, 12, 0}, side, side, resumed, now_ns).value();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a session captures its whole schedule, each under its own light alone") {
+  Bench bench;
+  auto machine = bench.machine();
+  REQUIRE(bench.drive(machine).has_value());
+  const auto schedule = calib::capture_schedule(bench.plan, side, side);
+  REQUIRE(bench.stored.size() == schedule.size());
+  for (std::size_t k = 0; k < schedule.size(); ++k) {
+    CAPTURE(k);
+    const calib::Capture& taken = bench.stored[k];
+    CHECK(taken.stage == name(schedule[k].stage));
+    CHECK(taken.frames == schedule[k].frames);
+    CHECK(taken.repeat == 0);
+    const hal::Image picture = calib::picture_of(schedule[k], side, side).value();
+    for (int c = 0; c < channels; ++c) {
+      const auto code = static_cast<std::int32_t>(bench.dark + bench.light_of(picture, c));
+      CHECK(taken.codes[static_cast<std::size_t>(c)] == taken.frames * code);
+    }
+  }
+  const auto progress = machine.progress(bench.now_ns);
+  CHECK(progress.taken == progress.of);
+  // The light takes 30 ms and not the one that it says.
+  CHECK(progress.settle_ms >= 28.0);
+  CHECK(progress.settle_ms <= 36.0);
+  CHECK(progress.signal_lsb == doctest::Approx(400.0));
+}
+
+TEST_CASE("references, darks and held-out patterns come as often as the plan says, and a reference is the last") {
+  calib::SessionPlan plan;
+  plan.patterns = 256;
+  const auto schedule = calib::capture_schedule(plan, 16, 16);
+  const auto count = [&](Stage stage) {
+    return std::count_if(schedule.begin(), schedule.end(), [&](const auto& w) { return w.stage == stage; });
+  };
+  CHECK(count(Stage::pattern) + count(Stage::held_out) == 256);
+  CHECK(count(Stage::held_out) == 256 / 5);
+  CHECK(count(Stage::reference) == 256 / 16 + 1);
+  CHECK(count(Stage::interleaved_dark) == 256 / 64 + 1);
+  CHECK(count(Stage::dark) == 64);
+  CHECK(count(Stage::ramp) == count(Stage::ramp_rest));
+  CHECK(schedule[schedule.size() - 2].stage == Stage::reference);
+  // A ramp's two parts are the white picture.
+  for (std::size_t k = 1; k < schedule.size(); ++k) {
+    if (schedule[k].stage != Stage::ramp_rest) continue;
+    const auto a = calib::picture_of(schedule[k - 1], 16, 16).value(),
+               b = calib::picture_of(schedule[k], 16, 16).value();
+    for (std::size_t n = 0; n < a.pixels.size(); ++n) CHECK(a.pixels[n] + b.pixels[n] == 1.0F);
+  }
+  plan.family = "raster";
+  const auto few = calib::capture_schedule(plan, 4, 4);
+  CHECK(std::count_if(few.begin(), few.end(), [](const auto& w) { return w.family == "raster"; }) == 16);
+}
+
+TEST_CASE("a session that was cut off goes on after the last capture that was stored") {
+  Bench whole;
+  auto machine = whole.machine();
+  REQUIRE(whole.drive(machine).has_value());
+  for (const std::int64_t cut : {1, 12, 17, 30}) {
+    CAPTURE(cut);
+    Bench bench;
+    auto first = bench.machine();
+    REQUIRE(bench.drive(first, cut).has_value());
+    calib::Resumed resumed{cut, {}};
+    for (const auto& capture : bench.stored) {
+      if (capture.family == "all-on") resumed.reference = capture;
+    }
+    auto second = bench.machine(resumed);
+    REQUIRE(bench.drive(second).has_value());
+    REQUIRE(bench.stored.size() == whole.stored.size());
+    for (std::size_t k = 0; k < whole.stored.size(); ++k) {
+      CHECK(bench.stored[k].stage == whole.stored[k].stage);
+      CHECK(bench.stored[k].pattern == whole.stored[k].pattern);
+      CHECK(bench.stored[k].codes == whole.stored[k].codes);
+    }
+  }
+}
+
+TEST_CASE("a session does not go on before another light than it was begun with") {
+  Bench bench;
+  auto first = bench.machine();
+  REQUIRE(bench.drive(first, 30).has_value());
+  calib::Resumed resumed{30, {}};
+  for (const auto& capture : bench.stored) {
+    if (capture.family == "all-on") resumed.reference = capture;
+  }
+  bench.gain *= 0.9;
+  auto second = bench.machine(resumed);
+  test::check_error(bench.drive(second), hal::ErrorCode::mismatch, "reference", {"10", "5"});
+  CHECK(bench.stored.size() == 30);
+}
+
+TEST_CASE("what is lost, overrun, saturated or of other settings is taken again, and counted") {
+  struct Case {
+    calib::Rejection reason;
+    std::function<void(hal::SampleBlock&, Bench&)> spoil;
+  };
+  const std::vector<Case> cases{
+      {calib::Rejection::gap, [](hal::SampleBlock& b, Bench& bench) { b.frame = bench.frame++; }},
+      {calib::Rejection::overrun, [](hal::SampleBlock& b, Bench&) { b.flags.overrun = true; }},
+      {calib::Rejection::configuration, [](hal::SampleBlock& b, Bench&) { b.config_id = 7; }},
+      {calib::Rejection::saturated,
+       [](hal::SampleBlock&, Bench& bench) { std::fill(bench.codes.begin(), bench.codes.end(), 4095); }},
+  };
+  for (const Case& each : cases) {
+    CAPTURE(name(each.reason));
+    Bench bench, undisturbed;
+    bench.plan.frames = undisturbed.plan.frames = 3;
+    auto whole = undisturbed.machine();
+    REQUIRE(undisturbed.drive(whole).has_value());
+    int until_next = 0;
+    auto machine = bench.machine();
+    bench.spoil = [&](hal::SampleBlock& block) {
+      const bool within = machine.progress(0).taken >= 12;
+      if (within && ++until_next % 23 == 0) each.spoil(block, bench);
+    };
+    REQUIRE(bench.drive(machine).has_value());
+    CHECK(machine.progress(0).rejected[static_cast<std::size_t>(each.reason)] > 0);
+    REQUIRE(bench.stored.size() == undisturbed.stored.size());
+    std::uint64_t repeats = 0;
+    for (std::size_t k = 0; k < bench.stored.size(); ++k) {
+      CHECK(bench.stored[k].codes == undisturbed.stored[k].codes);
+      repeats += static_cast<std::uint64_t>(bench.stored[k].repeat);
+    }
+    CHECK(repeats == machine.progress(0).rejected[static_cast<std::size_t>(each.reason)]);
+  }
+}
+
+TEST_CASE("a session gives up on what never comes whole, and says why") {
+  Bench bench;
+  bench.plan.most_retakes = 3;
+  auto machine = bench.machine();
+  bench.spoil = [&](hal::SampleBlock& block) { block.config_id = machine.progress(0).taken >= 5 ? 9 : 0; };
+  test::check_error(bench.drive(machine), hal::ErrorCode::mismatch, "black", {"5", "4"});
+  CHECK(bench.stored.size() == 5);
+}
+
+TEST_CASE("too much light, too little and light that does not settle are refused before anything is stored") {
+  const auto refused = [](const test::Named& named, auto change) {
+    Bench bench;
+    change(bench);
+    auto machine = bench.machine();
+    test::check_error(bench.drive(machine), hal::ErrorCode::out_of_range, "light", named);
+    CHECK(bench.stored.empty());
+  };
+  refused({"16"}, [](Bench& b) { b.gain = 2000.0; });
+  refused({"12", "50"}, [](Bench& b) { b.gain = 3.0; });
+  refused({"100"}, [](Bench& b) { b.light_delay_ns = 90 * ms; });
+}
+
+TEST_CASE("a device that begins anew is believed about its time no more than before") {
+  Bench bench;
+  auto machine = bench.machine();
+  std::int64_t back_ns = 0;
+  bench.spoil = [&](hal::SampleBlock& block) {
+    if (machine.progress(0).taken == 20) back_ns = 900 * ms;
+    block.t_ns -= back_ns;
+  };
+  Bench whole;
+  auto undisturbed = whole.machine();
+  REQUIRE(whole.drive(undisturbed).has_value());
+  REQUIRE(bench.drive(machine).has_value());
+  REQUIRE(bench.stored.size() == whole.stored.size());
+  for (std::size_t k = 0; k < whole.stored.size(); ++k) CHECK(bench.stored[k].codes == whole.stored[k].codes);
+}
+
+TEST_CASE("a plan that makes no sense is refused by the name of its setting") {
+  const auto refused = [](hal::ErrorCode code, const std::string& place, const test::Named& named, auto change) {
+    calib::SessionPlan plan;
+    change(plan);
+    test::check_error(calib::SessionMachine::create(plan, {channels, 12, 0}, side, side, {}, 0), code, place, named);
+  };
+  using P = calib::SessionPlan;
+  const auto range = hal::ErrorCode::out_of_range;
+  refused(range, "plan.warm_up_s", {"-1"}, [](P& p) { p.warm_up_s = -1.0; });
+  refused(range, "plan.warm_up_s", {"nan"}, [](P& p) { p.warm_up_s = std::nan(""); });
+  refused(range, "plan.dark_frames", {"1", "2"}, [](P& p) { p.dark_frames = 1; });
+  refused(range, "plan.held_out_every", {"1", "2"}, [](P& p) { p.held_out_every = 1; });
+  refused(range, "plan.saturation_share", {"1.5"}, [](P& p) { p.saturation_share = 1.5; });
+  refused(range, "plan", {"600000", "524287", "12"}, [](P& p) { p.frames = 600'000; });
+  refused(hal::ErrorCode::not_found, "pattern", {"blob", "blobs"}, [](P& p) { p.family = "blob"; });
+}
