@@ -15,10 +15,10 @@ double noise_of(const Circumstances& c) noexcept {
   return std::sqrt(rounding_variance + read * read + shot_variance);
 }
 
-/// Two renderings of the same light differ by so many LSB rms at most: each keeps to .05 (simulation.cpp) with every
-/// surface, cone and instant, and is as white as noise.
-double rendered_anew(const Effect& effect) noexcept {
-  constexpr double lsb = 0.1;
+/// Two renderings of the same light differ by so many LSB rms at most: each keeps to .05 (simulation.cpp) for every
+/// surface, with its cones and instants, and is as white as noise.
+double rendered_anew(const Effect& effect, const Scene& scene) noexcept {
+  const double lsb = 0.1 * static_cast<double>(scene.surfaces.size());
   const bool renders =
       effect.group == EffectGroup::scene || effect.group == EffectGroup::optics || effect.group == EffectGroup::timing;
   return renders ? lsb : 0.0;
@@ -135,8 +135,9 @@ Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensiti
     PlannedEffect& planned = plan.effects.emplace_back(look_at(*effect, circumstances));
     planned.nmse = nmse_of(planned.bound_lsb, effect->error);
     if (!planned.called_for_by.empty()) {
-      planned.bound_lsb += rendered_anew(*effect);
-      planned.nmse += nmse_of(rendered_anew(*effect), ErrorKind::white);
+      const double anew = rendered_anew(*effect, circumstances.scene);
+      planned.bound_lsb += anew;
+      planned.nmse += nmse_of(anew, ErrorKind::white);
     }
     if (planned.decision == Decision::forced_on || planned.decision == Decision::forced_off) continue;
     if (mode == PlanMode::everything) planned.decision = Decision::on;

@@ -35,14 +35,14 @@ double look_mm(const EyeToSimulate& board) {
   return std::max(board.object.distance_mm * std::tan(board.eye.acceptance_rad / 2.0) / 2.0, 1e-6);
 }
 
+/// Reliefs stay as they are: what hides behind a step is told by how steep it is, and what a step moves by how fine
+/// its picture is.
 Scene coarse_scene(const EyeToSimulate& board, const Scene& scene) {
   Scene coarse = lit(scene);
   for (Surface& surface : coarse.surfaces) {
+    if (surface.shape == Shape::relief) continue;
     for (hal::Image& band : surface.bands) {
       band = coarsened(band, surface.width_mm, surface.height_mm, look_mm(board));
-    }
-    if (surface.shape == Shape::relief) {
-      surface.heights = coarsened(surface.heights, surface.width_mm, surface.height_mm, look_mm(board));
     }
   }
   return coarse;

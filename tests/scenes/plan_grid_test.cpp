@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <set>
 #include <string>
@@ -183,14 +184,19 @@ int check_plans(const Board& board, std::size_t first) {
 
 using Groups = std::set<sim::EffectGroup>;
 
-/// Number of the effects of these groups that any scene calls for; `first` is the scene to begin with.
-std::size_t check_bounds(const Board& board, const Groups& groups, const std::string& first) {
-  std::set<std::string> looked_at;
-  Grid grid(board);
-  CAPTURE(board.name);
+/// The scenes, beginning with one of them.
+std::vector<std::string> scene_files_after(const std::string& first) {
   std::vector<std::string> files = scene_files();
   std::rotate(files.begin(), std::find(files.begin(), files.end(), test::source_path("scenes/" + first + ".toml")),
               files.end());
+  return files;
+}
+
+/// Number of the effects of these groups that any scene calls for.
+std::size_t check_bounds(const Board& board, const Groups& groups, const std::vector<std::string>& files) {
+  std::set<std::string> looked_at;
+  Grid grid(board);
+  CAPTURE(board.name);
   for (const std::string& file : files) {
     CAPTURE(file);
     const sim::Scene scene = choose_scene(board, {file, 0, std::nullopt}).value();
@@ -257,20 +263,29 @@ TEST_CASE("plans keep their promise before wide cones") {
 // No bound is less than the truth, nor more than ten times where an effect dominates.
 
 TEST_CASE("bounds hold for what scenes do") {
-  CHECK(check_bounds(shipped("sim-8x8"), {sim::EffectGroup::scene, sim::EffectGroup::timing}, "display") >= 8);
+  CHECK(check_bounds(shipped("sim-8x8"), {sim::EffectGroup::scene, sim::EffectGroup::timing},
+                     scene_files_after("display")) >= 8);
 }
 
 TEST_CASE("bounds hold for what the optics do") {
-  CHECK(check_bounds(shipped("sim-8x8-built"), {sim::EffectGroup::optics}, "star") >= 7);
+  CHECK(check_bounds(shipped("sim-8x8-built"), {sim::EffectGroup::optics}, scene_files_after("star")) >= 7);
 }
 
 TEST_CASE("bounds hold for what the detector does") {
   CHECK(check_bounds(shipped("sim-8x8-detector"), {sim::EffectGroup::detector, sim::EffectGroup::electronics},
-                     "star") >= 7);
+                     scene_files_after("star")) >= 7);
 }
 
 TEST_CASE("bounds hold for what wide cones do") {
-  CHECK(check_bounds(wide(), {sim::EffectGroup::optics}, "text") >= 3);
+  CHECK(check_bounds(wide(), {sim::EffectGroup::optics}, scene_files_after("text")) >= 3);
+}
+
+TEST_CASE("bounds hold for what a relief hides of itself") {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder.path() / "steps.toml").string();
+  std::ofstream(file) << "[[surface]]\nshape = \"relief\"\npicture = \"text\"\nheights = \"phantom\"\n"
+                         "resolution = [64, 64]\nrelief_mm = 3\n";
+  CHECK(check_bounds(shipped("sim-8x8"), {sim::EffectGroup::scene}, {file}) == 2);
 }
 
 // What nothing calls for changes nothing but how light is rendered to its tolerance.
