@@ -44,6 +44,8 @@ struct EyeGeometry {
   [[nodiscard]] Vec3 apex(int i, int k) const noexcept;
   /// Error out_of_range names the field and its allowed range.
   [[nodiscard]] Result<void> validate() const;
+
+  bool operator==(const EyeGeometry&) const = default;
 };
 
 /// The plane the eye looks at, perpendicular to z, centred on the axis. Pixel (r, c): row 0 on top, n = r * cols + c.
@@ -62,6 +64,8 @@ struct ObjectPlane {
     return eye.radius_mm + eye.lens_height_mm + distance_mm;
   }
   [[nodiscard]] Result<void> validate() const;
+
+  bool operator==(const ObjectPlane&) const = default;
 };
 
 }  // namespace compueye::hal

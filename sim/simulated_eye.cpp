@@ -68,6 +68,36 @@ SimulatedEye::SimulatedEye(SimulatedEyeSettings settings, std::vector<Simulation
   valid_.resize(m);
 }
 
+void SimulatedEye::Change::light_at(std::int64_t t_ns, std::span<double> light) const noexcept {
+  const double since_s = static_cast<double>(t_ns - at_ns) * 1e-9;
+  const double old = since_s < 0.0 ? 1.0 : response_s > 0.0 ? std::exp(-since_s / response_s) : 0.0;
+  for (std::size_t m = 0; m < light.size(); ++m) light[m] = after[m] + old * (before[m] - after[m]);
+}
+
+Result<void> SimulatedEye::show(const hal::Image& picture, double response_s) {
+  Simulation& display = simulations_.front();
+  const std::int64_t now_ns = clock_.now_ns();
+  Change next{now_ns, response_s, std::vector<double>(codes_.size()), std::vector<double>(codes_.size())};
+  if (change_) {
+    change_->light_at(now_ns, next.before);
+  } else {
+    std::ranges::copy(display.noise_free(0), next.before.begin());
+  }
+  if (!picture.pixels.empty()) {
+    TRY(display.show(picture));
+    std::ranges::copy(display.noise_free(0), next.after.begin());
+  }
+  light_.resize(codes_.size());
+  change_ = std::move(next);
+  return {};
+}
+
+bool SimulatedEye::codes_of(std::uint64_t frame, std::int64_t start_ns) {
+  if (!change_) return simulations_[scene_of_frame(frame)].codes(frame, codes_);
+  change_->light_at(start_ns, light_);
+  return simulations_.front().codes_of(light_, frame, codes_);
+}
+
 std::span<const double> SimulatedEye::noise_free(std::uint64_t frame) {
   return simulations_[scene_of_frame(frame)].noise_free(frame);
 }
@@ -141,7 +171,7 @@ Result<hal::SampleBlock> SimulatedEye::do_read(std::int64_t deadline_ns) {
 Result<hal::SampleBlock> SimulatedEye::deliver(std::int64_t now_ns) {
   const std::uint64_t frame = next_++;
   hal::SampleBlock block;
-  block.flags.saturated = simulations_[scene_of_frame(frame)].codes(frame, codes_);
+  block.flags.saturated = codes_of(frame, paced() ? exposure_start_ns(frame) : now_ns);
   std::fill(valid_.begin(), valid_.end(), std::uint8_t{1});
   for (const InvalidChannel& fault : settings_.faults.invalid_channels) {
     if (frame < fault.from_frame) continue;

@@ -47,6 +47,11 @@ class SimulatedEye final : public hal::SampleSource {
   [[nodiscard]] static hal::Result<std::unique_ptr<SimulatedEye>> create(SimulatedEyeSettings settings,
                                                                          hal::Clock& clock);
 
+  /// From the exposures on that begin now, the first scene's first surface shows `picture` (no pixels: no light at
+  /// all), and goes there from what it showed with a time constant of `response_s`. A display is one scene. Errors:
+  /// those of Simulation::show().
+  [[nodiscard]] hal::Result<void> show(const hal::Image& picture, double response_s);
+
   /// The M signals that the optics deliver in frame `frame`, in fully seen pixels at white, and what the converter is
   /// given in LSB. Valid until the next frame.
   [[nodiscard]] std::span<const double> noise_free(std::uint64_t frame);
@@ -72,6 +77,16 @@ class SimulatedEye final : public hal::SampleSource {
   [[nodiscard]] bool lost_on_the_way(std::uint64_t frame) const noexcept;
   void overwrite_oldest(std::uint64_t finished) noexcept;
   hal::Result<hal::SampleBlock> deliver(std::int64_t now_ns);
+  [[nodiscard]] bool codes_of(std::uint64_t frame, std::int64_t start_ns);
+
+  /// A change of light, in signals. A frame is given what there is at its beginning.
+  struct Change {
+    std::int64_t at_ns = 0;  // of the Clock
+    double response_s = 0.0;
+    std::vector<double> before, after;
+
+    void light_at(std::int64_t t_ns, std::span<double> light) const noexcept;
+  };
 
   SimulatedEyeSettings settings_;
   std::vector<Simulation> simulations_;  // one a scene
@@ -84,6 +99,8 @@ class SimulatedEye final : public hal::SampleSource {
   std::uint64_t next_ = 0;       // oldest frame whose fate is open
   bool overrun_pending_ = false;
   hal::FrameAccount account_;
+  std::optional<Change> change_;
+  std::vector<double> light_;
   std::vector<std::int32_t> codes_;
   std::vector<std::uint8_t> valid_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -53,16 +54,30 @@ Workings begin(const EyeToSimulate& board, const Scene& scene, std::uint64_t see
 
 struct Simulation::Parts {
   EyeToSimulate board;
+  std::uint64_t seed = 0;
   Scene scene;
   Preview preview;
   Plan plan;
   Workings workings;
-  std::vector<Renderer> renderers;  // one: a Renderer is made once the scene has its place
+  std::optional<Renderer> renderer;  // made once the scene has its place
   std::vector<double> signals, render, levels;
   std::vector<std::int32_t> stuck;
   std::vector<double> channel_turn;  // 0 .. 1 of the scan, by channel
   bool changes = false;              // the scene, as far as it is rendered
   bool rendered = false;
+
+  /// What the planned effects make of the scene as it is.
+  hal::Result<void> prepare() {
+    const Circumstances circumstances{board, scene, preview};
+    workings = begin(board, scene, seed);
+    for (const PlannedEffect& each : plan.effects) {
+      if (each.on()) each.effect->apply(circumstances, workings);
+    }
+    changes = workings.render.motion && !workings.scene.still();
+    renderer = TRY(Renderer::create(board.eye, board.object, workings.optics, workings.render, workings.scene));
+    rendered = false;
+    return {};
+  }
 
   [[nodiscard]] double start_s(std::uint64_t frame) const noexcept {
     return static_cast<double>(frame) * board.period_s();
@@ -75,7 +90,7 @@ struct Simulation::Parts {
     const int n = workings.exposure.instants;
     std::fill(into.begin(), into.end(), 0.0);
     for (int k = 0; k < n; ++k) {
-      renderers.front().render(t_s + (k + 0.5) / n * board.integration_s(), render);
+      renderer->render(t_s + (k + 0.5) / n * board.integration_s(), render);
       for (std::size_t m = 0; m < into.size(); ++m) into[m] += render[m] / n;
     }
   }
@@ -141,15 +156,9 @@ hal::Result<Simulation> Simulation::create(EyeToSimulate board, Scene scene, std
   p.board = std::move(board);
   p.scene = std::move(scene);
   p.preview = TRY(preview_of(p.board, p.scene));
-  const Circumstances circumstances{p.board, p.scene, p.preview};
-  p.plan = TRY(plan_of(circumstances, planning));
-  p.workings = begin(p.board, p.scene, seed);
-  for (const PlannedEffect& each : p.plan.effects) {
-    if (each.on()) each.effect->apply(circumstances, p.workings);
-  }
-  p.changes = p.workings.render.motion && !p.workings.scene.still();
-  p.renderers.push_back(
-      TRY(Renderer::create(p.board.eye, p.board.object, p.workings.optics, p.workings.render, p.workings.scene)));
+  p.seed = seed;
+  p.plan = TRY(plan_of({p.board, p.scene, p.preview}, planning));
+  TRY(p.prepare());
   const auto channels = static_cast<std::size_t>(p.board.eye.ommatidia());
   for (auto* each : {&p.signals, &p.render, &p.levels, &p.channel_turn}) each->resize(channels);
   p.stuck.resize(channels);
@@ -158,6 +167,19 @@ hal::Result<Simulation> Simulation::create(EyeToSimulate board, Scene scene, std
   }
   p.expose(0);
   return Simulation(std::move(parts));
+}
+
+hal::Result<void> Simulation::show(hal::Image picture) {
+  Scene& scene = parts_->scene;
+  if (scene.surfaces.front().bands.size() != 1) {
+    return hal::fail(hal::ErrorCode::mismatch, scene.name,
+                     "shows a picture of " + std::to_string(scene.surfaces.front().bands.size()) +
+                         " bands, expected one: a grey display");
+  }
+  std::swap(scene.surfaces.front().bands.front(), picture);
+  const auto made = validate(scene).and_then([&] { return parts_->prepare(); });
+  if (!made) std::swap(scene.surfaces.front().bands.front(), picture);
+  return made;
 }
 
 const Plan& Simulation::plan() const noexcept {

@@ -21,6 +21,10 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
+  /// From now on the scene's first surface shows `picture`, which covers it, by the effects as they were planned.
+  /// Renders it at the next frame. Errors: those of the picture; mismatch (a surface of several bands).
+  [[nodiscard]] hal::Result<void> show(hal::Image picture);
+
   [[nodiscard]] const Plan& plan() const noexcept;
   [[nodiscard]] const EyeToSimulate& board() const noexcept;
 

@@ -150,7 +150,8 @@ Result<void> SessionMachine::saw_settling(std::int64_t begun_ns, const hal::Samp
                 "does not settle within " + rounded(plan_.settle_ms) +
                     " ms of a change: wait until it is warm, keep other lamps away, or allow more with settle_ms");
   }
-  settle_ns_ = std::max(settle_ns_, *settled);
+  // Where light comes exponentially, three times the time makes a hundredth a millionth.
+  settle_ns_ = std::max(settle_ns_, 3 * *settled);
   begin(phase_ == Phase::falling ? Phase::rising : Phase::level_dark);
   return {};
 }

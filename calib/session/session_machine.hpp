@@ -42,7 +42,7 @@ struct SessionProgress {
   std::int64_t taken = 0, of = 0;  ///< captures, those of the session that was cut off included
   std::array<std::uint64_t, rejections> rejected{};
   double signal_lsb = 0.0;             ///< of the median channel under white, over the dark; 0: not seen yet
-  double settle_ms = 0.0;              ///< as measured; 0: not yet
+  double settle_ms = 0.0;              ///< waited after a change, three times what was measured; 0: not yet
   std::optional<double> seconds_left;  ///< by what captures took so far
 };
 

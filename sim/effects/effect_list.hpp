@@ -14,6 +14,7 @@
   EFFECT(light_falloff)          \
   EFFECT(spectral_response)      \
   EFFECT(lamp_drift)             \
+  EFFECT(display_drift)          \
   EFFECT(mains_flicker)          \
   EFFECT(misalignment)           \
   EFFECT(acceptance_spread)      \

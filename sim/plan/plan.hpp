@@ -56,7 +56,12 @@ struct Plan {
 /// What is left out may add this share of what the noise itself makes of a reconstruction.
 inline constexpr double share_left_out = 0.1;
 
-enum class PlanMode { automatic, everything, nothing };
+enum class PlanMode {
+  automatic,
+  called,  ///< all that is called for, however small
+  everything,
+  nothing
+};
 
 /// How a simulation comes to its plan.
 struct Planning {

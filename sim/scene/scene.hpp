@@ -24,10 +24,11 @@ struct Light {
 
 /// What a display does to the pictures of the surfaces that shine.
 struct Display {
-  double gamma = 1.0;        ///< shown = black_level + (1 - black_level) picture^gamma, 0.2 .. 5
-  double black_level = 0.0;  ///< 0 .. 0.9
-  double refresh_hz = 0.0;   ///< what moves on it moves in steps of 1/refresh; 0: at once
-  double pixel_blur = 0.0;   ///< of a pixel's width over which it runs into its neighbour, 0 .. 1
+  double gamma = 1.0;           ///< shown = black_level + (1 - black_level) picture^gamma, 0.2 .. 5
+  double black_level = 0.0;     ///< 0 .. 0.9
+  double refresh_hz = 0.0;      ///< what moves on it moves in steps of 1/refresh; 0: at once
+  double drift_per_hour = 0.0;  ///< relative change of its light, linear in time
+  double pixel_blur = 0.0;      ///< of a pixel's width over which it runs into its neighbour, 0 .. 1
 };
 
 enum class Forced { off, on };

@@ -139,6 +139,7 @@ Result<void> check_display(const std::string& name, const Display& display) {
   const Check check{name};
   TRY(check.within("[display] gamma", display.gamma, 0.2, 5.0));
   TRY(check.within("[display] black_level", display.black_level, 0.0, 0.9));
+  TRY(check.within("[display] drift_per_hour", display.drift_per_hour, -1.0, 10.0));
   TRY(check.within("[display] refresh_hz", display.refresh_hz, 0.0, 1e6));
   return check.within("[display] pixel_blur", display.pixel_blur, 0.0, 1.0);
 }

@@ -16,7 +16,7 @@ constexpr std::string_view not_on_the_frame_path =
     "any regex memory_resource new cstdlib stdlib.h thread mutex shared_mutex condition_variable future coroutine";
 
 // "Who may include whom": the house's table, a row a folder.
-constexpr std::array<FolderRule, 26> rules{{
+constexpr std::array<FolderRule, 27> rules{{
     {"hal", "hal", "tl-expected", false, none, false,
      "hal is contracts only: the standard library and tl::expected, no other folder, no OS header"},
 
@@ -39,8 +39,8 @@ constexpr std::array<FolderRule, 26> rules{{
     {"sim", "hal drivers/protocol sim", none, false, none, false,
      "sim: hal and drivers/protocol, never recon or calib (it must not share a forward model with them)"},
 
-    {"calib/eye_file", "hal recon recon/core calib/session/capture.hpp calib/eye_file", "sqlite xxhash", true, none, false,
-     "calib/eye_file: hal, recon's value types, the session's captures, SQLite, xxhash and OS headers"},
+    {"calib/eye_file", "hal recon recon/core calib/session/capture.hpp calib/eye_file", "sqlite xxhash", true, none,
+     false, "calib/eye_file: hal, recon's value types, the session's captures, SQLite, xxhash and OS headers"},
     {"calib", "hal recon recon/core calib", "Eigen", false, none, false,
      "calib: hal and recon (Eigen for estimators), never drivers, sim, firmware or the eye file's SQLite"},
 
@@ -66,11 +66,15 @@ constexpr std::array<FolderRule, 26> rules{{
      "hal recon recon/core firmware/eye firmware/files firmware/pipeline firmware/text firmware/operating_points",
      "fmt nlohmann-json xxhash", false, none, false,
      "firmware/operating_points: hal, recon, firmware/eye, files, text and pipeline, nlohmann-json, xxhash, fmt"},
+    {"firmware/calibration",
+     "hal recon recon/core calib calib/eye_file sim firmware/eye firmware/files firmware/text firmware/calibration",
+     "fmt", false, none, false,
+     "firmware/calibration: hal, calib and its eye file, sim, firmware/eye, files and text, fmt"},
     {"firmware/app", any, any, true, none, false, "firmware/app wires everything"},
     {"studies",
      "hal recon recon/core calib calib/eye_file sim drivers/protocol drivers/transport drivers/device "
      "drivers/illuminator drivers/recording firmware/pipeline firmware/files firmware/sinks firmware/text firmware/eye "
-     "firmware/operating_points studies",
+     "firmware/operating_points firmware/calibration studies",
      "fmt", true, none, false, "studies: everything but firmware/app and the bare metal, fmt and OS headers"},
 
     {"tests", any, any, true, none, false, "tests may include everything"},

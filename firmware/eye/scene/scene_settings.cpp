@@ -132,6 +132,10 @@ std::vector<SettingOf<Whole>> make_scene_settings() {
            "refresh_hz", "what moves on it moves in so many steps a second; 0: smoothly")
            .within({0, 1e6})
            .otherwise(V{0.0}),
+       field<&Whole::scene, &Scene::display, &Display::drift_per_hour>("drift_per_hour",
+                                                                       "relative change of its light, linear in time")
+           .within({-1, 10})
+           .otherwise(V{0.0}),
        field<&Whole::scene, &Scene::display, &Display::pixel_blur>(
            "pixel_blur", "share of a pixel's width over which it runs into its neighbour")
            .within({0, 1})

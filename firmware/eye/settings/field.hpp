@@ -48,6 +48,9 @@ inline std::array<double, 3> triple_of(const SettingValue& value) {
 inline void assign(int& member, const SettingValue& value) {
   member = static_cast<int>(std::get<std::int64_t>(value));
 }
+inline void assign(std::int64_t& member, const SettingValue& value) {
+  member = std::get<std::int64_t>(value);
+}
 inline void assign(std::uint64_t& member, const SettingValue& value) {
   member = static_cast<std::uint64_t>(std::get<std::int64_t>(value));
 }
@@ -78,6 +81,9 @@ inline void assign(std::vector<int>& member, const SettingValue& value) {
 }
 inline std::optional<SettingValue> value_of(int member) {
   return SettingValue(std::int64_t{member});
+}
+inline std::optional<SettingValue> value_of(std::int64_t member) {
+  return SettingValue(member);
 }
 inline std::optional<SettingValue> value_of(std::uint64_t member) {
   return SettingValue(static_cast<std::int64_t>(member));

@@ -31,6 +31,7 @@ const std::map<std::string_view, Failing> failing{
     {"compare", {"--board missing", "missing"}},
     {"pareto", {"--board missing", "missing"}},
     {"stability", {"--board missing", "missing"}},
+    {"calibrate", {"--board missing --eye z.eye", "missing"}},
     {"inspect", {"missing.npy", "missing.npy"}},
     {"record", {"--board missing --out z.rec", "missing"}},
     {"replay", {"missing.rec", "missing.rec"}},

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "calib/eye_file/eye_file.hpp"
+#include "calib/session/session_machine.hpp"
+#include "hal/clock.hpp"
+#include "hal/illuminator.hpp"
+#include "hal/sample_source.hpp"
+
+namespace compueye::firmware {
+
+/// The bench that a session runs on. All of it outlives the session.
+struct CalibrationBench {
+  hal::SampleSource& eye;
+  hal::Illuminator& light;
+  hal::Clock& clock;  ///< that of both
+};
+
+struct CalibrationRequest {
+  calib::SessionPlan plan;
+  bool resume = false;
+  double distance_mm = 0.0;   ///< of the light, from the lens tip
+  std::string configuration;  ///< of eye and board, in words or as a hash: what must not change within a session
+  std::string program;        ///< name and version
+  std::int64_t now_unix_s = 0;
+};
+
+/// Told after every frame; false ends the session, to be resumed.
+using CalibrationWatch = std::function<bool(const calib::SessionProgress&)>;
+
+/// Takes a session's captures into an eye file, each on the disk before the next picture shows, and ends the session.
+/// Its id. The channels are the ommatidia in order.
+///
+/// Whatever ends it, the captures that were taken stay, and `resume` goes on after the last. Errors: those of
+/// SessionMachine, of the eye, the light and the file; usage (the file holds a session that was cut off and is not to
+/// be resumed, or none that could be), mismatch (to be resumed with another eye, configuration or plan), timeout (no
+/// frame within ten seconds), interrupted (the watch said so).
+[[nodiscard]] hal::Result<std::int64_t> run_calibration(const CalibrationRequest& request,
+                                                        const CalibrationBench& bench, calib::EyeFile& file,
+                                                        const CalibrationWatch& watch);
+
+}  // namespace compueye::firmware
