@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace compueye::calib {
+
+enum class ChannelStatus {
+  good,
+  blind,         ///< the drawing has it look past the display
+  dead,          ///< tells nothing of the light
+  hot,           ///< its dark level is far above the others'
+  noisy,         ///< more than its share of noise
+  saturated,     ///< patterns reach the converter's end
+  does_not_fit,  ///< no cone explains the patterns that were held out
+};
+
+[[nodiscard]] std::string_view name(ChannelStatus status) noexcept;
+
+/// When a channel's row is masked.
+struct StatusLimits {
+  double dead_share = 0.05;          ///< of the channels' median response, each over what the drawing expects of it
+  double hot_deviations = 6.0;       ///< median absolute deviations of the dark level above its median
+  double least_deviation_lsb = 1.0;  ///< that those are taken for at least
+  double noisy_ratio = 4.0;          ///< variance over the model's
+  double saturated_share = 0.05;     ///< of a channel's captures
+  double misfit_share = 0.15;        ///< rms misfit over the spread of the signal, both over the patterns held out,
+  double misfit_chi2 = 4.0;          ///< and chi^2 a point: beyond both, a channel does not fit
+  double blind_pixels = 0.5;         ///< drawn to see less than so many pixels: blind
+};
+
+[[nodiscard]] double median(std::vector<double> values) noexcept;  ///< NaN and none: 0
+
+}  // namespace compueye::calib
