@@ -7,13 +7,14 @@
 namespace compueye::hal {
 namespace {
 
-constexpr std::array<NamedChannelStatus, 6> statuses{{
+constexpr std::array<NamedChannelStatus, 7> statuses{{
     {"good", ChannelStatus::good},
     {"dead", ChannelStatus::dead},
     {"hot", ChannelStatus::hot},
     {"noisy", ChannelStatus::noisy},
     {"saturated", ChannelStatus::saturated},
     {"does-not-fit", ChannelStatus::does_not_fit},
+    {"blind", ChannelStatus::blind},
 }};
 
 }  // namespace

@@ -16,6 +16,7 @@ enum class ChannelStatus : std::uint8_t {
   noisy = 3,         ///< varies far more than its noise explains
   saturated = 4,     ///< at full scale under the light that it was measured with
   does_not_fit = 5,  ///< no response explains its samples of held-out patterns
+  blind = 6,         ///< the drawing has it look past the light
 };
 
 struct NamedChannelStatus {

@@ -6,26 +6,6 @@
 
 namespace compueye::calib {
 
-std::string_view name(ChannelStatus status) noexcept {
-  switch (status) {
-    case ChannelStatus::good:
-      return "good";
-    case ChannelStatus::blind:
-      return "blind";
-    case ChannelStatus::dead:
-      return "dead";
-    case ChannelStatus::hot:
-      return "hot";
-    case ChannelStatus::noisy:
-      return "noisy";
-    case ChannelStatus::saturated:
-      return "saturated";
-    case ChannelStatus::does_not_fit:
-      return "does_not_fit";
-  }
-  return "";
-}
-
 double median(std::vector<double> values) noexcept {
   std::erase_if(values, [](double value) { return std::isnan(value); });
   if (values.empty()) return 0.0;

@@ -1,21 +1,12 @@
 #pragma once
 
-#include <string_view>
 #include <vector>
+
+#include "hal/channel_status.hpp"
 
 namespace compueye::calib {
 
-enum class ChannelStatus {
-  good,
-  blind,         ///< the drawing has it look past the display
-  dead,          ///< tells nothing of the light
-  hot,           ///< its dark level is far above the others'
-  noisy,         ///< more than its share of noise
-  saturated,     ///< patterns reach the converter's end
-  does_not_fit,  ///< no cone explains the patterns that were held out
-};
-
-[[nodiscard]] std::string_view name(ChannelStatus status) noexcept;
+using hal::ChannelStatus;
 
 /// When a channel's row is masked.
 struct StatusLimits {

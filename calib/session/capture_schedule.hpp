@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,11 @@ namespace compueye::calib {
 /// The parts of a session, in the order in which they begin. References, darks and held-out patterns come between the
 /// patterns.
 enum class Stage { dark, black, flat, ramp, ramp_rest, pattern, held_out, reference, interleaved_dark, resumed };
+
+inline constexpr std::array all_stages{Stage::dark,     Stage::black,     Stage::flat,
+                                       Stage::ramp,     Stage::ramp_rest, Stage::pattern,
+                                       Stage::held_out, Stage::reference, Stage::interleaved_dark,
+                                       Stage::resumed};
 
 [[nodiscard]] std::string_view name(Stage stage) noexcept;
 

@@ -10,7 +10,7 @@ using namespace compueye;
 using namespace compueye::hal;
 
 TEST_CASE("a channel status keeps its number and its name, which files hold") {
-  const std::string_view names[] = {"good", "dead", "hot", "noisy", "saturated", "does-not-fit"};
+  const std::string_view names[] = {"good", "dead", "hot", "noisy", "saturated", "does-not-fit", "blind"};
   int number = 0;
   REQUIRE(channel_statuses().size() == std::size(names));
   for (const NamedChannelStatus& each : channel_statuses()) {
@@ -20,7 +20,7 @@ TEST_CASE("a channel status keeps its number and its name, which files hold") {
     CHECK(*channel_status_of(number) == each.status);
     ++number;
   }
-  test::check_error(channel_status_of(6), ErrorCode::out_of_range, "channel status", {"6", "5"});
+  test::check_error(channel_status_of(7), ErrorCode::out_of_range, "channel status", {"7", "6"});
   test::check_error(channel_status_of(-1), ErrorCode::out_of_range, "channel status", {"-1", "0"});
   CHECK(name(static_cast<ChannelStatus>(77)) == "unknown");
 }

@@ -1,19 +1,28 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
+#include "calib/emva1288.hpp"
+#include "calib/estimate/estimate.hpp"
 #include "calib/eye_file/eye_file.hpp"
 #include "firmware/app/command.hpp"
 #include "firmware/calibration/calibration_run.hpp"
+#include "firmware/calibration/estimate_record.hpp"
 #include "firmware/calibration/plan_file.hpp"
+#include "firmware/calibration/session_captures.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/settings/setting.hpp"
+#include "hal/channel_status.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -86,6 +95,98 @@ class Teller {
   bool signal_told_ = false;
 };
 
+struct Estimated {
+  std::int64_t id = 0;
+  calib::ResponseEstimate rows;
+  calib::SensorNoise sensor;
+};
+
+/// From the session's captures to rows in the file.
+Result<Estimated> estimate(const Board& board, const CalibrationRequest& request, std::int64_t id, calib::EyeFile& file,
+                           Session& session) {
+  const SessionCaptures taken = TRY(session_captures(file, id, 1.0 / board.source.frame_rate_hz));
+  Estimated made;
+  made.sensor = TRY(calib::sensor_noise(taken.series, board.eye.ommatidia(), taken.bits));
+  const calib::CodeNoise noise =
+      TRY(code_noise(taken, made.sensor, 1.0 / board.sensor.lsb(), request.plan.saturation_share));
+  calib::EstimateSettings settings;
+  settings.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
+  made.rows =
+      TRY(calib::estimate_response(taken.captures, noise, board.eye, board.object, settings, session.progress()));
+  session.end_progress();
+  EstimateOrigin origin;
+  origin.sessions = {id};
+  origin.program = request.program;
+  origin.method = "hybrid";
+  origin.plan = text_of(request.plan);
+  origin.distance_mm = request.distance_mm;
+  origin.made_unix_s = request.now_unix_s;
+  made.id = TRY(store(made.rows, made.sensor, origin, file));
+  return made;
+}
+
+/// "61 good, 2 dead, 1 does-not-fit".
+std::string statuses_of(const calib::ResponseEstimate& rows) {
+  std::string text;
+  for (const hal::NamedChannelStatus& each : hal::channel_statuses()) {
+    const auto count = std::count_if(rows.rows.begin(), rows.rows.end(),
+                                     [&](const calib::RowEstimate& row) { return row.status == each.status; });
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, each.name);
+  }
+  return text;
+}
+
+/// Standard deviation of a row's entries over their norm, of the median good row: what the row is known to.
+double row_error(const calib::ResponseEstimate& rows) {
+  std::vector<double> shares;
+  for (const calib::RowEstimate& row : rows.rows) {
+    double sigma2 = 0.0, value2 = 0.0;
+    for (std::size_t k = 0; k < row.values.size(); ++k) {
+      sigma2 += std::pow(static_cast<double>(row.sigmas[k]), 2);
+      value2 += std::pow(static_cast<double>(row.values[k]), 2);
+    }
+    if (value2 > 0.0) shares.push_back(std::sqrt(sigma2 / value2));
+  }
+  return calib::median(std::move(shares));
+}
+
+double median_chi2(const calib::ResponseEstimate& rows) {
+  std::vector<double> all;
+  for (const calib::RowEstimate& row : rows.rows) {
+    if (row.status == hal::ChannelStatus::good) all.push_back(row.held_out_chi2);
+  }
+  return calib::median(std::move(all));
+}
+
+Figures report_of(const CalibrateRequest& o, const Board& board, const calib::SessionProgress& p, std::int64_t id,
+                  const Estimated& made) {
+  std::uint64_t rejected = 0;
+  for (const std::uint64_t count : p.rejected) rejected += count;
+  const auto good = std::count_if(made.rows.rows.begin(), made.rows.rows.end(),
+                                  [](const calib::RowEstimate& row) { return row.status == hal::ChannelStatus::good; });
+  Figures f{{"file", o.eye},
+            {"board", board.name},
+            {"session", id},
+            {"estimate", made.id},
+            {"captures", p.of},
+            {"rejected", rejected},
+            {"signal_lsb", p.signal_lsb},
+            {"settle_ms", p.settle_ms},
+            {"channels", board.eye.ommatidia()},
+            {"good_channels", good},
+            {"row_error", row_error(made.rows)},
+            {"held_out_chi2", median_chi2(made.rows)},
+            {"plane_distance_error_mm", made.rows.plane.distance_mm},
+            {"display_gamma", made.rows.gamma},
+            {"display_black_level", made.rows.black_level}};
+  f.tell("{file}: session {session} of {board}, {captures} captures[; {rejected} were taken again]\n");
+  f.say(fmt::format("channels: {}\n", statuses_of(made.rows)));
+  return f.say(fmt::format(
+      "rows known to {:.2f} % (median of what is stated); patterns held out: chi^2 {:.2f} a sample\n"
+      "display: {:+.3f} mm from where the board has it, black level {:.4f}\n",
+      100.0 * row_error(made.rows), median_chi2(made.rows), made.rows.plane.distance_mm, made.rows.black_level));
+}
+
 Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   const Board board = TRY(load_board(o.board));
   CalibrationRequest request;
@@ -108,16 +209,10 @@ Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   const std::int64_t id = TRY(run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file,
                                               [&](const calib::SessionProgress& p) { return teller.tell(p); }));
   session.end_progress();
+  const Estimated made = TRY(estimate(board, request, id, file, session));
   TRY(file.close());
   const calib::SessionProgress& p = teller.last();
-  Figures f{{"file", o.eye},
-            {"board", board.name},
-            {"session", id},
-            {"captures", p.of},
-            {"signal_lsb", p.signal_lsb},
-            {"settle_ms", p.settle_ms},
-            {"plan", text_of(request.plan)}};
-  return session.print(f.tell("{file}: session {session} of {board}, {captures} captures\n"));
+  return session.print(report_of(o, board, p, id, made));
 }
 
 Action declare(OptionList& options) {
