@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include "calib/patterns/pattern_family.hpp"
 #include "calib/patterns/pattern_painters.hpp"
+#include "hal/nearest_name.hpp"
 
 namespace compueye::calib {
 namespace {
@@ -32,20 +32,6 @@ constexpr std::array<PatternFamily, 7> families{{
      [](int rows, int cols, std::uint64_t, std::int64_t) { return hal::Image(rows, cols, 0.0F); }},
 }};
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (const char wanted : a) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (wanted == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
 
 hal::Result<hal::Image> PatternFamily::draw(int rows, int cols, std::uint64_t seed, std::int64_t index) const {
@@ -71,14 +57,15 @@ std::span<const PatternFamily> pattern_families() noexcept {
 hal::Result<const PatternFamily*> pattern_family(std::string_view name) {
   const auto found = std::find_if(families.begin(), families.end(), [&](const auto& f) { return f.name == name; });
   if (found != families.end()) return &*found;
-  const auto nearest = std::min_element(families.begin(), families.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(a.name, name) < edit_distance(b.name, name);
-  });
-  std::string known;
-  for (const PatternFamily& each : families) known += (known.empty() ? "" : ", ") + std::string(each.name);
+  std::vector<std::string_view> known;
+  std::string listed;
+  for (const PatternFamily& each : families) {
+    known.push_back(each.name);
+    listed += (listed.empty() ? "" : ", ") + std::string(each.name);
+  }
   return hal::fail(hal::ErrorCode::not_found, "pattern",
-                   "'" + std::string(name) + "' is no family of patterns; did you mean '" + std::string(nearest->name) +
-                       "'? Known are " + known);
+                   "'" + std::string(name) + "' is no family of patterns, expected one of " + listed +
+                       hal::did_you_mean(name, known));
 }
 
 }  // namespace compueye::calib
