@@ -243,9 +243,10 @@ TEST_CASE("calib: channels that tell nothing or lie never reach the response") {
   const auto response = found.response(board().object);
   REQUIRE(response.has_value());
   const std::vector<double> sums = response->row_sums();
-  for (const auto& [m, status] : expected) {
+  for (const auto& each : expected) {
+    const std::size_t m = each.first;
     INFO("channel " << m << " is " << name(found.rows[m].status));
-    CHECK(found.rows[m].status == status);
+    CHECK(found.rows[m].status == each.second);
     CHECK(found.rows[m].columns.empty());
     CHECK(sums[m] == 0.0);
   }
