@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -32,12 +33,34 @@ Result<void> check_scalar(const char* what, double value, double above, double u
 }
 
 template <class Good>
-Result<void> check_each(const char* what, std::span<const float> values, const char* expected, Good good) {
+Result<void> check_each(const char* what, std::span<const float> values, const char* expected, Good good,
+                        const char* whose = "channel") {
   const auto bad = std::find_if_not(values.begin(), values.end(), good);
   if (bad == values.end()) return {};
   return fail(ErrorCode::out_of_range, place,
-              std::string(what) + " of channel " + std::to_string(bad - values.begin()) + " is " +
+              std::string(what) + " of " + whose + " " + std::to_string(bad - values.begin()) + " is " +
                   std::to_string(*bad) + ", expected " + expected);
+}
+
+Result<void> check_measured(const MeasuredSensor& m, std::size_t channels) {
+  const auto finite = [](float v) { return std::isfinite(v); };
+  for (const auto& checked :
+       {check_size("the measured mask", m.masked.size(), channels),
+        check_size("the measured dark level", m.dark.size(), channels),
+        check_each("the measured dark level", m.dark, "a finite number", finite, "ommatidium"),
+        check_each("the measured linearity", m.codes, "a finite code", finite, "point"),
+        check_each("the straightened code", m.straightened, "a finite number", finite, "entry")}) {
+    if (!checked) return checked;
+  }
+  if (m.straightened.size() != m.codes.size() * channels) {
+    return fail(ErrorCode::mismatch, place,
+                "the measured linearity has " + std::to_string(m.straightened.size()) +
+                    " straightened codes, expected " + std::to_string(m.codes.size()) + " for each of the " +
+                    std::to_string(channels) + " ommatidia");
+  }
+  const bool ascends = std::adjacent_find(m.codes.begin(), m.codes.end(), std::greater_equal<float>()) == m.codes.end();
+  if (m.codes.size() != 1 && ascends) return {};
+  return fail(ErrorCode::out_of_range, place, "the measured linearity does not have two or more codes that ascend");
 }
 
 Result<void> check_source(const hal::SourceDescription& source) {
@@ -81,6 +104,7 @@ Result<void> check_settings(const CorrectionSettings& s, std::size_t channels) {
         check_scalar("saturation_share", s.saturation_share, 0.0, infinity)}) {
     if (!checked) return checked;
   }
+  TRY(check_measured(s.measured, channels));
   if (!(s.max_missing_share >= 0.0 && s.max_missing_share <= 1.0)) {
     return fail(ErrorCode::out_of_range, place,
                 "max_missing_share is " + std::to_string(s.max_missing_share) + ", expected 0 to 1");
@@ -117,8 +141,10 @@ Result<Correction> Correction::create(const CorrectionSettings& settings, const 
     channel.dark = settings.dark.empty() ? 0.0F : settings.dark[i];
     channel.scale = static_cast<float>((settings.gain.empty() ? 1.0 : settings.gain[i]) * settings.lsb);
     channel.sees = settings.sees.empty() || settings.sees[static_cast<std::size_t>(channel.ommatidium)] != 0;
-    if (channel.sees) ++c.seeing_;
   }
+  c.take_measured(settings.measured);
+  c.seeing_ = static_cast<int>(
+      std::count_if(c.channels_.begin(), c.channels_.end(), [](const Channel& channel) { return channel.sees; }));
   int dead = 0;
   for (const std::int32_t d : settings.dead_channels) {
     Channel& channel = c.channels_[static_cast<std::size_t>(d)];
@@ -135,6 +161,27 @@ Result<Correction> Correction::create(const CorrectionSettings& settings, const 
                     std::to_string(c.max_masked_) + ", so every frame would be dropped");
   }
   return c;
+}
+
+void Correction::take_measured(const MeasuredSensor& measured) {
+  const std::size_t points = measured.codes.size();
+  if (points > 0) knots_.assign(measured.codes.begin(), measured.codes.end() - 1);
+  for (Channel& channel : channels_) {
+    const auto m = static_cast<std::size_t>(channel.ommatidium);
+    if (!measured.masked.empty() && measured.masked[m] != 0) channel.alive = channel.sees = false;
+    if (!measured.dark.empty()) channel.dark = measured.dark[m];
+    for (std::size_t k = 0; k + 1 < points; ++k) {
+      const float* const value = &measured.straightened[m * points + k];
+      pieces_.push_back({value[0], (value[1] - value[0]) / (measured.codes[k + 1] - measured.codes[k])});
+    }
+  }
+}
+
+float Correction::straightened(std::size_t channel, float code) const noexcept {
+  const auto after = std::upper_bound(knots_.begin() + 1, knots_.end(), code);
+  const auto k = static_cast<std::size_t>(after - knots_.begin()) - 1;
+  const Piece& piece = pieces_[channel * knots_.size() + k];
+  return piece.first + (code - knots_[k]) * piece.slope;
 }
 
 bool Correction::matches_configuration(const hal::SampleBlock& block) noexcept {
@@ -160,7 +207,8 @@ CorrectionReport Correction::apply(const hal::SampleBlock& block, std::span<floa
     const bool saturated = measured && code >= saturation_code_;
     const bool used = measured && !saturated;
     const auto m = static_cast<std::size_t>(channel.ommatidium);
-    y[m] = used ? (static_cast<float>(code) - channel.dark) * channel.scale : 0.0F;
+    const float level = knots_.empty() ? static_cast<float>(code) : straightened(c, static_cast<float>(code));
+    y[m] = used ? (level - channel.dark) * channel.scale : 0.0F;
     weights[m] = used ? 1.0F : 0.0F;
     report.masked += static_cast<int>(channel.sees && !used);
     report.saturated += static_cast<int>(channel.sees && saturated);

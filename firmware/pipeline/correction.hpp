@@ -12,6 +12,15 @@
 
 namespace compueye::firmware {
 
+/// What a calibration measured of the sensor, by ommatidium. A straightened code is the one that a converter without
+/// bends would have given.
+struct MeasuredSensor {
+  std::vector<std::uint8_t> masked;  ///< M, not 0: never used, and counts as blind; empty: none
+  std::vector<float> dark;           ///< M straightened codes, finite; empty: CorrectionSettings::dark holds
+  std::vector<float> codes;          ///< K >= 2, finite, ascending; empty: the converter is straight
+  std::vector<float> straightened;   ///< K an ommatidium, finite: of each of `codes`
+};
+
 /// What is known about the sensor of one eye. Channel = position in a SampleBlock, ommatidium = row of A.
 struct CorrectionSettings {
   std::vector<float> dark;                  ///< M codes by channel, finite; empty: 0
@@ -19,6 +28,7 @@ struct CorrectionSettings {
   double lsb = 1.0;                         ///< > 0: what one code is worth, in fully seen white pixels
   std::vector<std::int32_t> dead_channels;  ///< channels that are never used
   std::vector<std::uint8_t> sees;           ///< M flags by ommatidium, 0 = blind row of A; empty: all see
+  MeasuredSensor measured;                  ///< nothing in it: not measured
   double saturation_share = 0.98;           ///< > 0: codes from this share of full scale on are not used; > 1: off
   double max_missing_share = 0.05;          ///< 0..1 of the seeing channels that a usable frame may lack
   std::optional<std::uint32_t> expected_config_id;  ///< empty: that of the first frame of the run
@@ -34,7 +44,8 @@ struct CorrectionReport {
 };
 
 /// codes -> y and weights: y[ommatidium] = (code - dark) * gain * lsb with weight 1, or 0 with weight 0 where the
-/// channel is dead, invalid, saturated or out of the code range.
+/// channel is dead, masked, invalid, saturated or out of the code range. Where a linearity was measured the code is
+/// straightened first, on straight lines between its points; beyond them the last one goes on.
 ///
 /// A frame is `corrupt` when its size or bit depth is not what the source described, or when its config_id differs:
 /// dark, gain and lsb belong to one configuration (integration time, range), so samples taken with another would make
@@ -42,7 +53,7 @@ struct CorrectionReport {
 /// usable again when the device returns to it.
 class Correction {
  public:
-  /// Errors: mismatch (sizes, channel map with a repeat), out_of_range (a value named with its channel), and usage
+  /// Errors: mismatch (sizes, channel map with a repeat), out_of_range (a value named with its place), and usage
   /// when the dead channels alone exceed max_missing_share, because then no frame could ever pass.
   [[nodiscard]] static hal::Result<Correction> create(const CorrectionSettings& settings,
                                                       const hal::SourceDescription& source);
@@ -68,9 +79,18 @@ class Correction {
     bool alive = true;
     bool sees = true;
   };
+  /// A straight line between two measured points of a channel.
+  struct Piece {
+    float first = 0.0F;
+    float slope = 0.0F;
+  };
   [[nodiscard]] bool matches_configuration(const hal::SampleBlock& block) noexcept;
+  void take_measured(const MeasuredSensor& measured);
+  [[nodiscard]] float straightened(std::size_t channel, float code) const noexcept;
 
   std::vector<Channel> channels_;
+  std::vector<float> knots_;   // where pieces begin; empty: the converter is straight
+  std::vector<Piece> pieces_;  // knots_.size() a channel
   int bits_ = 0;
   int seeing_ = 0;
   int max_masked_ = 0;

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/hal/error_check.hpp"
@@ -84,6 +85,73 @@ TEST_CASE("codes become (code - dark) * gain * lsb at the ommatidium of their ch
   CHECK(got.y == std::vector<float>{99.5F * 0.25F, -20.0F * 0.5F * 0.25F, 20.0F * 2.0F * 0.25F});
   CHECK(got.weights == std::vector<float>{1.0F, 1.0F, 1.0F});
   CHECK(got.report.masked == 0);
+}
+
+TEST_CASE("what was measured of an ommatidium holds for its channel") {
+  SourceDescription source = eye(3, 8);
+  source.ommatidium_of_channel = {2, 0, 1};
+  CorrectionSettings settings;
+  settings.dark = {100.0F, 100.0F, 100.0F};
+  settings.lsb = 0.5;
+  settings.max_missing_share = 0.0;
+  settings.measured.dark = {1.0F, 2.0F, 3.0F};
+  settings.measured.masked = {0, 1, 0};
+  Correction correction = make(settings, source);
+  CHECK(correction.seeing_channels() == 2);
+  const Corrected got = apply(correction, Capture({23, 41, 77}));
+  CHECK(got.report.usable);
+  CHECK(got.report.masked == 0);
+  CHECK(got.y == std::vector<float>{20.0F, 0.0F, 10.0F});
+  CHECK(got.weights == std::vector<float>{1.0F, 0.0F, 1.0F});
+}
+
+TEST_CASE("codes are straightened on straight lines between measured points, and beyond them on the last ones") {
+  CorrectionSettings settings;
+  settings.saturation_share = 2.0;
+  settings.measured.codes = {10.0F, 20.0F, 40.0F};
+  // A channel that is straight, one with a bend at 20, and one that is off by ten.
+  settings.measured.straightened = {10, 20, 40, 10, 24, 36, 20, 30, 50};
+  settings.measured.dark = {0.0F, 0.0F, 10.0F};
+  Correction correction = make(settings, eye(3, 8));
+  for (const int code : {0, 5, 10, 15, 20, 25, 40, 41, 63}) {
+    CAPTURE(code);
+    const double bent = code < 20 ? 10.0 + 1.4 * (code - 10) : 24.0 + 0.6 * (code - 20);
+    const Corrected got = apply(correction, Capture({code, code, code}));
+    CHECK(got.y[0] == static_cast<float>(code));
+    CHECK(got.y[1] == doctest::Approx(bent));
+    CHECK(got.y[2] == static_cast<float>(code));
+  }
+}
+
+TEST_CASE("a linearity of two points is one line, and without any the bits stay what they were") {
+  CorrectionSettings settings;
+  settings.dark = {0.3F, 0.7F};
+  settings.lsb = 0.1;
+  Correction plain = make(settings, eye(2, 8));
+  const Corrected before = apply(plain, Capture({17, 201}));
+  CHECK(before.y == std::vector<float>{(17.0F - 0.3F) * 0.1F, (201.0F - 0.7F) * 0.1F});
+  settings.measured.codes = {0.0F, 100.0F};
+  settings.measured.straightened = {0, 200, 0, 50};
+  Correction line = make(settings, eye(2, 8));
+  CHECK(apply(line, Capture({17, 201})).y == std::vector<float>{(34.0F - 0.3F) * 0.1F, (100.5F - 0.7F) * 0.1F});
+}
+
+TEST_CASE("what was measured is refused where it does not fit the eye or is no number") {
+  const auto refuse = [](MeasuredSensor measured, ErrorCode code, const Named& named) {
+    CorrectionSettings settings;
+    settings.measured = std::move(measured);
+    check_error(Correction::create(settings, eye(2, 8)), code, "correction", named);
+  };
+  refuse({{1}, {}, {}, {}}, ErrorCode::mismatch, {"1", "2"});
+  refuse({{}, {1, 2, 3}, {}, {}}, ErrorCode::mismatch, {"3", "2"});
+  refuse({{}, {1, no_number}, {}, {}}, ErrorCode::out_of_range, {"1", "nan"});
+  refuse({{}, {}, {1, 2}, {1, 2, 3}}, ErrorCode::mismatch, {"3", "2"});
+  refuse({{}, {}, {2, 1}, {1, 2, 3, 4}}, ErrorCode::out_of_range, {});
+  refuse({{}, {}, {1, 1}, {1, 2, 3, 4}}, ErrorCode::out_of_range, {});
+  refuse({{}, {}, {1}, {1, 2}}, ErrorCode::out_of_range, {});
+  refuse({{}, {}, {1, infinity}, {1, 2, 3, 4}}, ErrorCode::out_of_range, {"1", "inf"});
+  refuse({{}, {}, {1, 2}, {1, 2, infinity, 4}}, ErrorCode::out_of_range, {"2", "inf"});
+  refuse({{1, 1}, {}, {}, {}}, ErrorCode::usage, {});
 }
 
 TEST_CASE("every code of a 24-bit sensor survives the way to float") {

@@ -39,6 +39,10 @@ TEST_CASE("from the first frame to the last no thread of the pipeline uses the h
     rig.settings.pacing = pacing;
     rig.settings.frames = 300;
     rig.settings.deadline_ns = 1;
+    rig.settings.correction.measured.codes = {0.0F, 100.0F};
+    for (int m = 0; m < Rig::channels; ++m) {
+      for (const float code : {1.0F, 120.0F}) rig.settings.correction.measured.straightened.push_back(code);
+    }
     rig.source.length = 1'000'000;
     rig.source.script = troubled;
     HeapUse process_before;
