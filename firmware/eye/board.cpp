@@ -181,6 +181,10 @@ double Board::noise_sigma() const noexcept {
   return sigma.value_or(sensor.noise_sigma());
 }
 
+std::string Board::eye_path() const {
+  return overrules("board", "eye") ? eye_file : (std::filesystem::path(folder) / eye_file).string();
+}
+
 std::string Board::cache() const {
   return cache_folder(folder);
 }

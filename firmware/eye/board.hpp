@@ -34,6 +34,7 @@ struct SceneSettings {
 struct Board {
   std::string name;         ///< letters, digits, '.', '_' and '-': safe in file names
   std::string description;  ///< one line, may be empty
+  std::string eye_file;     ///< with the response as measured, see eye_path(); empty: it is the nominal one
   hal::EyeGeometry eye;
   hal::ObjectPlane object;
   hal::SensorSettings sensor;
@@ -54,6 +55,8 @@ struct Board {
 
   /// Of one sample: `sigma`, or else what the sensor's figures give.
   [[nodiscard]] double noise_sigma() const noexcept;
+  /// Where `eye_file` is: relative to the working folder as a command line names it, else to the board's folder.
+  [[nodiscard]] std::string eye_path() const;
   /// The folder in which what takes long to make is kept from run to run.
   [[nodiscard]] std::string cache() const;
   /// "board.toml:12" for an Error::place: the line of the key, else of its section, else the bare file.

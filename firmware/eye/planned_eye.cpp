@@ -30,8 +30,11 @@ bool is_black(const hal::Image& truth) {
 Result<sim::Sensitivity> sensitivity_to(const Board& board, const sim::Scene& scene, const recon::Progress& progress) {
   const hal::Image truth = TRY(sim::scene_truth(scene, board.object));
   if (is_black(truth)) return sim::Sensitivity::of_small_eye();
-  const LivingResponse living = TRY(living_response(board, progress));
-  const ReadyEye ready = TRY(ReadyEye::make(board, living, board.cache(), progress));
+  // What is planned is the eye as drawn, whatever was measured of one.
+  Board drawn = board;
+  drawn.eye_file.clear();
+  const LivingResponse living = TRY(living_response(drawn, progress));
+  const ReadyEye ready = TRY(ReadyEye::make(drawn, living, drawn.cache(), progress));
   return handed_over(
       TRY(recon::measure_sensitivity(living.response, ready.reconstructor(), truth, board.noise_sigma(), progress)));
 }

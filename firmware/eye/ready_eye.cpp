@@ -50,11 +50,22 @@ std::string_view name(LambdaOrigin origin) noexcept {
 }
 
 hal::Result<LivingResponse> living_response(const Board& board, const recon::Progress& progress) {
-  recon::Response response = TRY(calib::nominal_response(board.eye, board.object, progress));
+  if (board.eye_file.empty()) {
+    return living_response(board, TRY(calib::nominal_response(board.eye, board.object, progress)));
+  }
+  if (progress && !progress("eye file", 0.0, 0.0)) {
+    return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");
+  }
+  MeasuredRows rows = TRY(measured_rows(board));
+  return living_response(board, std::move(rows.response), std::make_shared<const MeasuredEye>(std::move(rows.eye)));
+}
+
+LivingResponse living_response(const Board& board, recon::Response response,
+                               std::shared_ptr<const MeasuredEye> measured) {
   std::vector<std::uint8_t> sees(static_cast<std::size_t>(response.rows()), 0);
   for (const std::int32_t m : response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
   if (!board.sensor.dead.empty()) response = response.without_rows(board.sensor.dead);
-  return LivingResponse{std::move(response), std::move(sees)};
+  return {std::move(response), std::move(sees), std::move(measured)};
 }
 
 hal::Result<LambdaChoice> choose_lambda(const recon::Response& response, recon::SolverKind solver,
@@ -79,6 +90,7 @@ hal::Result<ReadyEye> ReadyEye::make(const Board& board, const LivingResponse& l
                                      const recon::Progress& progress) {
   ReadyEye eye;
   eye.sees_ = living.sees;
+  eye.measured_ = living.measured;
   recon::Plan plan = board.plan;
   // As many as the correction lets pass, so that no usable frame is too much for the solver; and as many to be found.
   const auto seeing = static_cast<double>(std::count(eye.sees_.begin(), eye.sees_.end(), 1));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/measured_eye.hpp"
 #include "firmware/eye/reconstructor_maker.hpp"
 #include "hal/result.hpp"
 #include "recon/problem/response.hpp"
@@ -18,14 +19,20 @@
 
 namespace compueye::firmware {
 
-/// The nominal response of a board's geometry as far as its ommatidia live.
+/// The response of a board, measured or nominal, as far as its ommatidia live.
 struct LivingResponse {
-  recon::Response response;        ///< the rows of dead ommatidia are empty
-  std::vector<std::uint8_t> sees;  ///< by ommatidium, 0 = sees nothing by its geometry; a dead one may well see
+  recon::Response response;        ///< the rows of dead and masked ommatidia are empty
+  std::vector<std::uint8_t> sees;  ///< by ommatidium, 0 = sees nothing or is masked; one that the board calls dead may
+  std::shared_ptr<const MeasuredEye> measured = {};  ///< null: it is the nominal one
 };
 
-/// Errors: those of nominal_response(); interrupted.
+/// That of the board's eye file where it names one. Errors: those of measured_rows() or nominal_response();
+/// interrupted.
 [[nodiscard]] hal::Result<LivingResponse> living_response(const Board& board, const recon::Progress& progress);
+
+/// The same of another response of the board's eye.
+[[nodiscard]] LivingResponse living_response(const Board& board, recon::Response response,
+                                             std::shared_ptr<const MeasuredEye> measured = {});
 
 enum class LambdaOrigin : std::uint8_t {
   hand,      ///< the board's or the command line's
@@ -49,12 +56,11 @@ struct LambdaChoice {
                                                       recon::BasisKind basis, std::optional<double> by_hand,
                                                       double sigma, double white = 1.0);
 
-/// A board made ready to reconstruct: the nominal response of its geometry with the rows of dead ommatidia zero,
-/// lambda, the factor (kept or made) and the reconstructor.
+/// A board made ready to reconstruct: its living_response(), lambda, the factor (kept or made) and the reconstructor.
 class ReadyEye {
  public:
   /// Takes from milliseconds to minutes; `progress` is asked throughout. What takes long is kept in the folder `cache`
-  /// (empty: nowhere). Errors: those of nominal_response(), lambda_by_rule() and Reconstructor::create(); interrupted.
+  /// (empty: nowhere). Errors: those of living_response(), lambda_by_rule() and Reconstructor::create(); interrupted.
   [[nodiscard]] static hal::Result<ReadyEye> make(const Board& board, const std::string& cache,
                                                   const recon::Progress& progress);
   /// The same on a response that is there already, which only this call looks at.
@@ -67,8 +73,10 @@ class ReadyEye {
   [[nodiscard]] const recon::Reconstructor& reconstructor() const noexcept { return *reconstructor_; }
   /// Gives the reconstructor away, and with it the right to ask for it.
   [[nodiscard]] recon::Reconstructor take_reconstructor() && { return std::move(*reconstructor_); }
-  /// By ommatidium, 0 = sees nothing of the object plane by its geometry; a dead one may well see.
+  /// As in LivingResponse.
   [[nodiscard]] const std::vector<std::uint8_t>& sees() const noexcept { return sees_; }
+  /// Null: the response is the nominal one.
+  [[nodiscard]] const MeasuredEye* measured() const noexcept { return measured_.get(); }
   [[nodiscard]] const LambdaChoice& lambda() const noexcept { return lambda_; }
   [[nodiscard]] FactorOrigin factor_origin() const noexcept { return factor_origin_; }
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
@@ -99,6 +107,7 @@ class ReadyEye {
   recon::Plan plan_;  // as asked for, its rules not resolved
   std::unique_ptr<recon::Reconstructor> reconstructor_;
   std::vector<std::uint8_t> sees_;
+  std::shared_ptr<const MeasuredEye> measured_;
   LambdaChoice lambda_;
   FactorOrigin factor_origin_ = FactorOrigin::made;
   std::vector<std::string> notes_;

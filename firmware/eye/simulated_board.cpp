@@ -50,13 +50,15 @@ sim::SimulatedEyeSettings simulated_eye_settings(const Board& board, sim::Scene 
   return settings;
 }
 
-CorrectionSettings correction_settings(const Board& board, std::span<const std::uint8_t> sees) {
+CorrectionSettings correction_settings(const Board& board, std::span<const std::uint8_t> sees,
+                                       const MeasuredEye* measured) {
   CorrectionSettings settings;
   settings.dark.assign(static_cast<std::size_t>(board.eye.ommatidia()),
                        static_cast<float>(board.sensor.dark_level_lsb));
   settings.lsb = board.sensor.lsb();
   settings.dead_channels.assign(board.sensor.dead.begin(), board.sensor.dead.end());
   settings.sees.assign(sees.begin(), sees.end());
+  if (measured != nullptr) settings.measured = measured->sensor;
   settings.saturation_share = board.sensor.saturation_share;
   settings.max_missing_share = board.sensor.max_missing_share;
   return settings;

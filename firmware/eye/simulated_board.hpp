@@ -5,6 +5,7 @@
 #include <span>
 
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/measured_eye.hpp"
 #include "firmware/pipeline/correction.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
@@ -21,8 +22,10 @@ namespace compueye::firmware {
 [[nodiscard]] sim::SimulatedEyeSettings simulated_eye_settings(const Board& board, sim::Scene scene,
                                                                std::uint64_t seed);
 
-/// How the codes of a board become samples. `sees` as in CorrectionSettings.
-[[nodiscard]] CorrectionSettings correction_settings(const Board& board, std::span<const std::uint8_t> sees = {});
+/// How the codes of a board become samples, by what was `measured` of its eye where that is not null. `sees` as in
+/// CorrectionSettings.
+[[nodiscard]] CorrectionSettings correction_settings(const Board& board, std::span<const std::uint8_t> sees = {},
+                                                     const MeasuredEye* measured = nullptr);
 
 /// The same board with narrow eyes: acceptance angle = interommatidial angle, every channel alive. Nothing for a
 /// lattice without an interommatidial angle.

@@ -37,17 +37,25 @@ Result<void> check_name(const std::string& name) {
                                name, fmt::join(varied, ", ")));
 }
 
-Result<EvaluationScene> drawn(const Board& board, const std::string& name, std::uint64_t seed, bool moving) {
+Result<std::vector<double>> signals_through(const recon::Response* measured, const Board& board,
+                                            const sim::Scene& scene) {
+  if (measured == nullptr) return sim::drawn_signals(board.eye, board.object, scene);
+  const hal::Image truth = TRY(sim::scene_truth(scene, board.object));
+  const std::vector<double> x(truth.pixels.begin(), truth.pixels.end());
+  std::vector<double> signals(static_cast<std::size_t>(measured->rows()));
+  measured->forward(x, signals);
+  return signals;
+}
+
+Result<EvaluationScene> drawn(const Board& board, const std::string& name, std::uint64_t seed, bool moving,
+                              const recon::Response* measured) {
   const sim::Scene scene = TRY(choose_scene(board, {name, seed, std::nullopt}));
-  EvaluationScene drawing{name,
-                          seed,
-                          TRY(sim::scene_truth(scene, board.object)),
-                          TRY(sim::drawn_signals(board.eye, board.object, scene)),
-                          {}};
+  EvaluationScene drawing{
+      name, seed, TRY(sim::scene_truth(scene, board.object)), TRY(signals_through(measured, board, scene)), {}};
   for (std::size_t left = moving_frames; moving && left > 0; --left) {
     sim::Scene earlier = scene;
     earlier.surfaces.front().bands = {before_arrival(scene.surfaces.front().picture(), left)};
-    drawing.moving.push_back(TRY(sim::drawn_signals(board.eye, board.object, earlier)));
+    drawing.moving.push_back(TRY(signals_through(measured, board, earlier)));
   }
   return drawing;
 }
@@ -74,7 +82,8 @@ std::vector<std::string> usual_scenes(const Board& board) {
 }
 
 Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board, const std::vector<std::string>& names,
-                                                            bool moving, const recon::Progress& progress) {
+                                                            bool moving, const recon::Progress& progress,
+                                                            const recon::Response* measured) {
   for (const std::string& name : names) TRY(check_name(name));
   std::vector<EvaluationScene> scenes;
   while (scenes.size() < evaluation_scenes) {
@@ -82,7 +91,7 @@ Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board, 
       return hal::fail(ErrorCode::interrupted, board.name, "stopped before anything was measured");
     }
     const std::size_t i = scenes.size();
-    scenes.push_back(TRY(drawn(board, names[i % names.size()], first_evaluation_seed + i, moving)));
+    scenes.push_back(TRY(drawn(board, names[i % names.size()], first_evaluation_seed + i, moving, measured)));
   }
   return scenes;
 }

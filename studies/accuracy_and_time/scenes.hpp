@@ -9,6 +9,7 @@
 #include "firmware/operating_points/measured_points.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
+#include "recon/problem/response.hpp"
 #include "recon/setup/factor.hpp"
 
 namespace compueye::firmware {
@@ -21,7 +22,8 @@ inline constexpr std::size_t evaluation_scenes = 12;
 inline constexpr std::size_t sequence_frames = 12;
 inline constexpr std::size_t moving_frames = 6;
 
-/// A drawing in front of the eye and the light that reaches each ommatidium through the simulator's optics.
+/// A drawing in front of the eye and the light that reaches each ommatidium: through the simulator's optics or, where
+/// the eye's rows were measured and nothing else is known of its optics, as these say.
 struct EvaluationScene {
   std::string name;
   std::uint64_t seed = 0;
@@ -43,13 +45,13 @@ using FrameSequence = std::vector<EvaluationFrame>;
 /// 32 x 32), single dots otherwise.
 [[nodiscard]] std::vector<std::string> usual_scenes(const Board& board);
 
-/// Twelve scenes, the names in turn, each with a seed of its own, and with `moving` the frames before them. Errors:
+/// Twelve scenes, the names in turn, each with a seed of its own, and with `moving` the frames before them. `measured`:
+/// null for an eye as drawn. Errors:
 /// usage for a scene that is no built-in one or has not a drawing for every seed (fig2); those of the optics;
 /// interrupted.
-[[nodiscard]] hal::Result<std::vector<EvaluationScene>> make_evaluation_scenes(const Board& board,
-                                                                               const std::vector<std::string>& names,
-                                                                               bool moving,
-                                                                               const recon::Progress& progress);
+[[nodiscard]] hal::Result<std::vector<EvaluationScene>> make_evaluation_scenes(
+    const Board& board, const std::vector<std::string>& names, bool moving, const recon::Progress& progress,
+    const recon::Response* measured = nullptr);
 
 /// What the board's sensor makes of every scene at this noise, and its correction of the codes. The judged frame is the
 /// same for every motion. `sees` as in CorrectionSettings. Error mismatch when a frame would be dropped.

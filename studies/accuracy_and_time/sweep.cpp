@@ -234,9 +234,17 @@ Result<Sweep> sweep(const Board& board, const SweepOptions& options, const hal::
   Sweep result = head_of(board, options, living);
   SweepPlan plan = TRY(plan_sweep(board, options, result.seeing));
   result.notes = std::move(plan.notes);
+  if (living.measured) {
+    result.notes.push_back(
+        fmt::format("the eye is that of {}, estimate {}; its samples are computed from the rows that they are solved "
+                    "with, so errors "
+                    "of the rows are not in these figures",
+                    living.measured->file, living.measured->estimate));
+  }
   const bool moving = std::any_of(plan.curves.begin(), plan.curves.end(),
                                   [](const PlannedCurve& planned) { return planned.curve.motion == Motion::sprite; });
-  const auto scenes = TRY(make_evaluation_scenes(board, result.scenes, moving, progress));
+  const auto scenes =
+      TRY(make_evaluation_scenes(board, result.scenes, moving, progress, living.measured ? &living.response : nullptr));
   result.conventional = TRY(conventional_figures(board, scenes, result.levels, progress));
   Sweeper sweeper(board, options, living, clock, progress, result);
   TRY(sweeper.take(scenes, plan));

@@ -36,7 +36,7 @@ class Runner {
         samples_(samples),
         clock_(clock),
         progress_(progress),
-        maker_(samples.response, board.plan.op, board.cache(), ReconstructorMaker::Memory::remembers),
+        maker_(samples.living.response, board.plan.op, board.cache(), ReconstructorMaker::Memory::remembers),
         seeing_(static_cast<int>(maker_.response().seeing_rows().size())) {}
 
   Result<ComparedRow> run(const Contender& contender) {
@@ -148,8 +148,9 @@ Result<Comparison> head_of(const Board& board, const CompareOptions& options, Co
   head.sigma = board.noise_sigma();
   head.seed = options.seed;
   head.scene_seed = options.scene.seed;
-  head.channels = samples.response.rows();
-  head.seeing = static_cast<int>(samples.response.seeing_rows().size());
+  head.channels = samples.living.response.rows();
+  head.seeing = static_cast<int>(samples.living.response.seeing_rows().size());
+  head.measured = samples.living.measured;
   head.threads = board.plan.threads;
   if (samples.conventional) {
     head.conventional_quality = TRY(quality_of(*samples.conventional, samples.truth));
@@ -192,7 +193,7 @@ Result<Comparison> compare(const Board& board, const CompareOptions& options, co
   Runner runner(board, samples, clock, overall);
   std::optional<hal::Error> first_failure;
   for (const Contender& contender : all) {
-    if (takes_too_long(contender, options, samples.response)) {
+    if (takes_too_long(contender, options, samples.living.response)) {
       comparison.notes.emplace_back(
           "tsvd is left out: the whole spectrum of this eye takes many minutes; --solvers "
           "tsvd asks for it");

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/measured_eye.hpp"
 #include "firmware/eye/picture_quality.hpp"
 #include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/text/figures.hpp"
@@ -22,7 +24,7 @@ struct CompareOptions {
   SceneChoice scene;                 ///< on the object plane
   std::uint64_t seed = 0;            ///< of the noise
   bool exact = false;                ///< y = A x + n instead of the simulated eye
-  std::string response;              ///< file of another A for the board's eye; empty: the nominal one
+  std::string response;              ///< file of another A for the board's eye; empty: the board's living_response()
   std::vector<std::string> solvers;  ///< empty: all
   std::vector<std::string> bases;    ///< empty: all
 };
@@ -60,6 +62,7 @@ struct Comparison {
   std::string board;
   std::string scene;
   bool exact = false;
+  std::shared_ptr<const MeasuredEye> measured;  ///< null: the nominal response, or another one
   double sigma = 0.0;
   std::uint64_t seed = 0;
   std::uint64_t scene_seed = 0;

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <span>
 #include <utility>
 
-#include "calib/nominal.hpp"
 #include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/files/response_file.hpp"
@@ -23,11 +21,11 @@ namespace {
 using hal::ErrorCode;
 using hal::Result;
 
-Result<recon::Response> response_of(const Board& board, const CompareOptions& o, const recon::Progress& progress) {
-  recon::Response response =
-      TRY(o.response.empty() ? calib::nominal_response(board.eye, board.object, progress) : read_response(o.response));
+Result<LivingResponse> response_of(const Board& board, const CompareOptions& o, const recon::Progress& progress) {
+  if (o.response.empty()) return living_response(board, progress);
+  recon::Response response = TRY(read_response(o.response));
   if (response.rows() == board.eye.ommatidia() && response.cols() == board.object.pixels()) {
-    return std::move(response).with_image(board.object.rows, board.object.cols);
+    return living_response(board, TRY(std::move(response).with_image(board.object.rows, board.object.cols)));
   }
   return hal::fail(
       ErrorCode::mismatch, o.response,
@@ -38,8 +36,8 @@ Result<recon::Response> response_of(const Board& board, const CompareOptions& o,
 /// y = A x + n on the truth's own pixels.
 void take_exact(double sigma, std::uint64_t seed, CompareSamples& samples) {
   const std::vector<double> x(samples.truth.pixels.begin(), samples.truth.pixels.end());
-  std::vector<double> y(static_cast<std::size_t>(samples.response.rows()));
-  samples.response.forward(x, y);
+  std::vector<double> y(static_cast<std::size_t>(samples.living.response.rows()));
+  samples.living.response.forward(x, y);
   for (std::size_t m = 0; m < y.size(); ++m) {
     sim::RandomStream stream({seed, sim::Draws::read_noise, 0, static_cast<std::uint32_t>(m)});
     samples.y.push_back(static_cast<float>(y[m] + sigma * stream.gaussian()));
@@ -47,13 +45,12 @@ void take_exact(double sigma, std::uint64_t seed, CompareSamples& samples) {
   samples.weights.assign(samples.y.size(), 1.0F);
 }
 
-/// `sees` as in CorrectionSettings: by the geometry, dead ommatidia included.
-Result<void> take_from_eye(const Board& board, const sim::Scene& scene, std::uint64_t seed,
-                           std::span<const std::uint8_t> sees, CompareSamples& samples) {
+Result<void> take_from_eye(const Board& board, const sim::Scene& scene, std::uint64_t seed, CompareSamples& samples) {
   hal::VirtualClock clock;
   const auto eye = TRY(sim::SimulatedEye::create(simulated_eye_settings(board, scene, seed), clock));
   const std::atomic<bool> never{false};
-  TrialFrame frame = TRY(take_trial_frame(board, correction_settings(board, sees), *eye, clock, never));
+  const auto settings = correction_settings(board, samples.living.sees, samples.living.measured.get());
+  TrialFrame frame = TRY(take_trial_frame(board, settings, *eye, clock, never));
   samples.y = std::move(frame.y);
   samples.weights = std::move(frame.weights);
   return {};
@@ -64,15 +61,11 @@ Result<void> take_from_eye(const Board& board, const sim::Scene& scene, std::uin
 Result<CompareSamples> take_samples(const Board& board, const CompareOptions& o, const recon::Progress& progress) {
   const sim::Scene scene = TRY(choose_scene(board, o.scene));
   hal::Image truth = TRY(sim::scene_truth(scene, board.object));
-  recon::Response response = TRY(response_of(board, o, progress));
-  std::vector<std::uint8_t> sees(static_cast<std::size_t>(board.eye.ommatidia()), 0);
-  for (const std::int32_t m : response.seeing_rows()) sees[static_cast<std::size_t>(m)] = 1;
-  if (!board.sensor.dead.empty()) response = response.without_rows(board.sensor.dead);
-  CompareSamples samples{scene.name, std::move(truth), std::move(response), {}, {}, {}};
+  CompareSamples samples{scene.name, std::move(truth), TRY(response_of(board, o, progress)), {}, {}, {}};
   if (o.exact) {
     take_exact(board.noise_sigma(), o.seed, samples);
   } else {
-    TRY(take_from_eye(board, scene, o.seed, sees, samples));
+    TRY(take_from_eye(board, scene, o.seed, samples));
   }
   // A lattice without an interommatidial angle has no conventional eye; the comparison goes on without it.
   if (auto conventional = conventional_picture(board, scene, o.seed)) samples.conventional = std::move(*conventional);

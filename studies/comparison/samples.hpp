@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/ready_eye.hpp"
 #include "hal/image.hpp"
 #include "hal/result.hpp"
-#include "recon/problem/response.hpp"
 #include "recon/setup/factor.hpp"
 #include "studies/comparison/comparison.hpp"
 
@@ -16,13 +16,13 @@ namespace compueye::firmware {
 struct CompareSamples {
   std::string scene;
   hal::Image truth;
-  recon::Response response;  ///< dead ommatidia with empty rows
-  std::vector<float> y;      ///< M
+  LivingResponse living;
+  std::vector<float> y;  ///< M
   std::vector<float> weights;
   std::optional<hal::Image> conventional;  ///< what the conventional eye shows; none for a lattice that has none
 };
 
-/// Errors: those of the scene, the response file (and mismatch when it is another eye's), the nominal response and the
+/// Errors: those of the scene, the response file (and mismatch when it is another eye's), living_response() and the
 /// simulated eye; interrupted.
 [[nodiscard]] hal::Result<CompareSamples> take_samples(const Board& board, const CompareOptions& options,
                                                        const recon::Progress& progress);

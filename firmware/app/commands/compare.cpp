@@ -71,6 +71,7 @@ std::string table_text(const Comparison& c) {
 
 void tell_head(const Comparison& c, Figures& f) {
   f.tell("{board} in front of {scene}: {seeing_channels:,} of {channels:,} ommatidia see its {rows} x {cols} pixels\n");
+  if (c.measured) f.tell("measured: ").tell(measured_sentence).tell("\n");
   f.say(c.exact ? "y = A x + n with the very A that is inverted" : "y through the simulated eye");
   f.tell("; noise of a sample {sigma:4} white pixels; seed {seed}, scene seed {scene_seed}\n\n");
 }
@@ -104,6 +105,7 @@ Figures report_of(const Comparison& c) {
   Figures f{{"board", c.board},
             {"scene", c.scene},
             {"samples", c.exact ? "exact" : "simulated eye"},
+            {"measured", value_of(c.measured.get())},
             {"sigma", c.sigma},
             {"seed", c.seed},
             {"scene_seed", c.scene_seed},
@@ -151,13 +153,15 @@ void add_samples(OptionList& options, CompareRequest& o) {
   options.flag("--exact", o.exact,
                "y = A x + n with the very A that is inverted, instead of the simulated eye: an inverse crime, for "
                "figures that others published so");
-  options.add("--response", o.response, "another A for the board's eye, .npy or .mtx (default: the nominal one)");
+  options.add("--response", o.response,
+              "another A for the board's eye, .npy or .mtx (default: as measured or, without --eye, the nominal one)");
 }
 
 void add_contenders(OptionList& options, CompareRequest& o) {
   options.add("--solvers", o.solvers, "only these, such as admm,cp (default: all)");
   options.add("--bases", o.bases, "only these, such as dct,tv (default: all)");
   options.settings("compare", o.overrides);
+  options.at("--eye").excludes("--response");
   options.at("--iterations").meaning += "; without it, solvers that have no factor get ten times the board's";
   options.at("--lambda").meaning += ", for every solver and basis";
   options.at("--sigma").meaning += "; with --exact also the noise that is added";

@@ -24,7 +24,8 @@ using hal::Result;
 /// What `compueye pareto` was asked for.
 struct ParetoRequest : SweepOptions {
   std::string board;
-  std::string out;  ///< folder for CSV and plots; empty: none
+  Overrides overrides;  ///< the eye file
+  std::string out;      ///< folder for CSV and plots; empty: none
 };
 
 /// That the folder takes a file is found out before the long work, not after it.
@@ -86,7 +87,8 @@ Result<void> check(const ParetoRequest& o) {
 /// and the stored points say that they are partial.
 Result<void> run_pareto(const ParetoRequest& o, Session& session) {
   TRY(check(o));
-  const Board board = TRY(load_board(o.board));
+  Board board = TRY(load_board(o.board));
+  TRY(o.overrides.apply(board));
   TRY(try_folder(o.out));
   auto swept = sweep(board, o, session.clock(), session.progress());
   session.end_progress();
@@ -116,6 +118,7 @@ std::string footer() {
 Action declare(OptionList& options) {
   auto o = std::make_shared<ParetoRequest>();
   options.add("--board", o->board, "folder of the board, such as boards/sim-8x8");
+  options.settings("pareto", o->overrides);
   options.add("--out", o->out, "folder for the CSV and the plots; made when missing (default: none)")
       .output(Writes::folder);
   options.flag("--quick", o->quick, "few iterations of every solver and fewer timed frames: a first look");

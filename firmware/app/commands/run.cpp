@@ -164,6 +164,7 @@ Result<void> BoardRun::make_eye() {
 /// From stored points where a deadline asks for them; otherwise, or when there are none that fit, what the board says.
 Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
   living_ = TRY(living_response(board_, ask));
+  if (living_->measured) TRY(check_serial(*living_->measured, source_->serial()));
   const LivingResponse& living = *living_;
   // Iterations, threads or lambda by hand say what to run; nothing that was measured goes with them.
   const auto given = [this](std::string_view option) { return options_.overrides.has(option); };
@@ -214,8 +215,9 @@ Result<void> BoardRun::fit() {
   const bool fits_deadline = options_.deadline_ms && ladder_.rungs.empty(), chooses = chooses_lambda();
   if (options_.replays() && !fits_deadline && !chooses) return {};
   const auto tells = [this](const TrialFrame& one) { return eye().stands_above_noise(one.y, one.weights); };
-  const auto frame = take_trial_frame(board_, correction_settings(board_, eye().sees()), source_->unrecorded(),
-                                      session_.clock(), session_.stop_requested(), chooses ? tells : TrialWanted());
+  const auto frame =
+      take_trial_frame(board_, correction_settings(board_, eye().sees(), eye().measured()), source_->unrecorded(),
+                       session_.clock(), session_.stop_requested(), chooses ? tells : TrialWanted());
   // Whatever a recording's first frames are like, others may be better.
   if (!frame && options_.replays() && !fits_deadline && frame.error().code != ErrorCode::interrupted) {
     note("lambda stays the rule's: " + frame.error().text());
@@ -259,7 +261,7 @@ PipelineSettings BoardRun::pipeline_settings() const {
   settings.device_clock = DeviceClock::free_running;
   // A source finds out in five periods that it has to recover.
   settings.silence_limit_ns += static_cast<std::int64_t>(6e9 / std::max(board_.source.frame_rate_hz, 1e-3));
-  settings.correction = correction_settings(board_, eye().sees());
+  settings.correction = correction_settings(board_, eye().sees(), eye().measured());
   return settings;
 }
 

@@ -26,10 +26,12 @@ std::string times(std::uint64_t count) {
 
 Figures eye_figures(const Board& board, const ReadyEye& eye, const std::string& source) {
   const auto& sees = eye.sees();
+  const auto masked = static_cast<std::ptrdiff_t>(eye.measured() != nullptr ? eye.measured()->masked() : 0);
   return {{"board", board.name},
           {"source", source},
           {"ommatidia", board.eye.ommatidia()},
-          {"blind_ommatidia", std::count(sees.begin(), sees.end(), 0)},
+          {"blind_ommatidia", std::count(sees.begin(), sees.end(), 0) - masked},
+          {"masked_ommatidia", masked},
           {"dead_ommatidia", board.sensor.dead.size()},
           {"image_rows", eye.reconstructor().image_rows()},
           {"image_columns", eye.reconstructor().image_cols()},
@@ -172,14 +174,17 @@ std::string_view lambda_sentence(LambdaOrigin origin) {
   return {};
 }
 
-void tell_eye(Figures& f, LambdaOrigin lambda) {
+void tell_eye(Figures& f, const ReadyEye& eye) {
   f.tell(
       "{eye.board} ({eye.source}): {eye.ommatidia} ommatidia, {eye.blind_ommatidia} blind"
-      "[, {eye.dead_ommatidia} dead]; {eye.image_rows} x {eye.image_columns} pixels; scene {scene} at {distance_mm} "
-      "mm, seed {seed}\n"
+      "[, {eye.dead_ommatidia} dead][, {eye.masked_ommatidia} masked]; {eye.image_rows} x {eye.image_columns} pixels; "
+      "scene {scene} at "
+      "{distance_mm} mm, seed {seed}\n");
+  if (eye.measured() != nullptr) f.tell("measured: ").tell(measured_sentence).tell("\n");
+  f.tell(
       "{operating_point.solver}, {operating_point.basis}, {operating_point.iterations} iterations, lambda "
       "{operating_point.lambda:3}");
-  f.tell(std::string(lambda_sentence(lambda)));
+  f.tell(std::string(lambda_sentence(eye.lambda().origin)));
   f.tell(
       ", rho {operating_point.rho:3}\n"
       "set up in {setup_s:duration}, factor {factor}; memory: workspace {memory.workspace_bytes:bytes}, tables "
@@ -298,6 +303,7 @@ Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& 
             {"seed", report.seed},
             {"distance_mm", board.object.distance_mm},
             {"pacing", report.lossless ? "lossless" : "live"},
+            {"measured", value_of(eye.measured())},
             {"operating_point", point_figures(eye)},
             {"factor", name(eye.factor_origin())},
             {"memory", Figures{{"workspace_bytes", eye.reconstructor().required_bytes()},
@@ -326,7 +332,7 @@ Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& 
             {"files", report.files},
             {"notes", report.notes}};
   if (s.error) f.add("error", figures_of(*s.error));
-  tell_eye(f, eye.lambda().origin);
+  tell_eye(f, eye);
   tell_frames(f, report);
   tell_tables(f, report);
   return f;

@@ -25,7 +25,7 @@ namespace {
 
 /// Lines "key = value".
 std::string header_text(const RecordingRequest& request, const Board& board) {
-  std::string text = board_lines(board) + request.lambda;
+  std::string text = board_lines(board) + request.pictures;
   if (!board.source.simulated()) return text;
   return text + fmt::format("scene = {}\nscene_seed = {}\nseed = {}\n", visible_text(request.scene), request.scene_seed,
                             request.seed);
@@ -50,6 +50,10 @@ std::string mismatch_of(const recording::RecordingReader& recording, const Board
   if (differences.empty()) return {};
   return fmt::format("{} was recorded with another board: {}; expect pictures that are wrong", recording.place(),
                      text_of(differences));
+}
+
+std::string picture_lines(const ReadyEye& eye) {
+  return lambda_lines(eye) + (eye.measured() != nullptr ? provenance_lines(*eye.measured()) : std::string());
 }
 
 std::int64_t unix_minus(const hal::Clock& clock) {
@@ -105,7 +109,7 @@ Result<void> RunSource::begin_recording(const RunOptions& options, const Board& 
                                         const ReadyEye& eye, hal::Clock& clock) {
   if (options.record.empty()) return {};
   recorder_ = TRY(with_recorder({options.record, scene.name, options.scene.seed, options.seed, options.lossless,
-                                 options.stop_if_unrecorded, lambda_lines(eye)},
+                                 options.stop_if_unrecorded, picture_lines(eye)},
                                 board, *source_, clock));
   return {};
 }

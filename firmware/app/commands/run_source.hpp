@@ -25,7 +25,7 @@ struct RecordingRequest {
   std::uint64_t seed = 0;
   bool lossless = false;         ///< waits for the disk
   bool stop_on_failure = false;  ///< frames end when the file fails
-  std::string lambda = {};       ///< lines that say how pictures were made of the frames meanwhile, if they were
+  std::string pictures = {};     ///< lines that say how pictures were made of the frames meanwhile, if they were
 };
 
 /// Whether a recording can be begun at `path`, so that it is known before the set-up and not after. Errors: io (there
@@ -48,8 +48,8 @@ class RunSource {
   [[nodiscard]] static hal::Result<RunSource> make(const RunOptions& options, const Board& board,
                                                    const sim::Scene& scene, std::uint64_t frames, hal::Clock& clock,
                                                    const recon::Progress& progress);
-  /// Where the options ask for a recording, its file is begun, with the lambda that is run with. Errors: those of
-  /// with_recorder().
+  /// Where the options ask for a recording, its file is begun, with the lambda and the measured response that is run
+  /// with. Errors: those of with_recorder().
   [[nodiscard]] hal::Result<void> begin_recording(const RunOptions& options, const Board& board,
                                                   const sim::Scene& scene, const ReadyEye& eye, hal::Clock& clock);
 
@@ -57,6 +57,8 @@ class RunSource {
   [[nodiscard]] hal::SampleSource& unrecorded() noexcept { return *source_; }
   /// What is run.
   [[nodiscard]] hal::SampleSource& source() noexcept;
+  /// Of the device, which may be behind a recording.
+  [[nodiscard]] const std::string& serial() const noexcept { return source_->describe().serial; }
   /// "sim SIM-8X8", "replay CE-1 from eye.rec".
   [[nodiscard]] std::string name() const;
   /// Where the recording's board was another one, a sentence; empty: it was not, or there is no recording.

@@ -44,7 +44,13 @@ Row angle(std::string_view name, std::string_view meaning) {
 void add_eye(std::vector<Setting>& all) {
   add(all, "board",
       {field<&Board::name>("name", "short name, used in file names and reports").of(SettingType::identifier).stated(),
-       field<&Board::description>("description", "one sentence for people").otherwise("")});
+       field<&Board::description>("description", "one sentence for people").otherwise(""),
+       field<&Board::eye_file>(
+           "eye",
+           "eye file, whose newest estimate at the object's distance takes the place of the nominal "
+           "response; empty: none. Relative to the board's folder")
+           .otherwise("")
+           .option_of("run compare pareto", "--eye", "FILE")});
   add(all, "eye",
       {choice_field<lattices, &Board::eye, &EyeGeometry::lattice>("lattice",
                                                                   "how the grid of ommatidia maps to directions")

@@ -39,7 +39,7 @@ PointLadder some_ladder(const Board& board, const LivingResponse& living) {
 
 TEST_CASE("a ladder has an eye a curve, and a frame of a rung has the bits of that point alone") {
   const Board board = board_8x8();
-  const auto living = living_response(board, {});
+  const auto living = living_response(board, recon::Progress{});
   REQUIRE(living.has_value());
   PointLadder ladder = some_ladder(board, *living);
   CHECK(ladder.eyes.size() == 2);
@@ -66,7 +66,7 @@ TEST_CASE("a ladder has an eye a curve, and a frame of a rung has the bits of th
 
 TEST_CASE("late frames step down, frames in time step up, and no step allocates") {
   const Board board = board_8x8();
-  const auto living = living_response(board, {});
+  const auto living = living_response(board, recon::Progress{});
   REQUIRE(living.has_value());
   PointLadder ladder = some_ladder(board, *living);
   LadderSolver solver(ladder);

@@ -1,0 +1,181 @@
+#include "firmware/eye/measured_eye.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <utility>
+
+#include "calib/eye_file/eye_file.hpp"
+#include "firmware/eye/settings/board_lines.hpp"
+#include "firmware/text/words.hpp"
+#include "hal/try.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::ErrorCode;
+using hal::fail;
+using hal::Result;
+
+/// Distances have sessions of their own, so that the file's is only one of them.
+Result<void> check_is_of(const calib::EyeFile& file, const Board& board) {
+  Board measured = board;
+  measured.eye = file.eye().geometry;
+  measured.object = file.eye().plane;
+  measured.object.distance_mm = board.object.distance_mm;
+  const auto differences = board_differences(board_lines(measured), board);
+  if (!differences.empty()) {
+    return fail(ErrorCode::mismatch, file.path(),
+                fmt::format("is of another eye than that of board {}: {}; name the board that belongs to it, or "
+                            "calibrate this one",
+                            board.name, text_of(differences)));
+  }
+  return {};
+}
+
+Result<calib::StoredEstimate> newest_of(const calib::EyeFile& file, std::optional<double> distance_mm) {
+  const std::vector<calib::StoredEstimate> all = TRY(file.estimates());
+  std::set<double> distances;
+  const calib::StoredEstimate* newest = nullptr;
+  for (const calib::StoredEstimate& each : all) {
+    distances.insert(each.distance_mm);
+    // A little more, so that a distance of as many decimals as people type is told from the next one rightly.
+    const bool fits = !distance_mm || std::abs(each.distance_mm - *distance_mm) <= same_distance_mm * (1.0 + 1e-9);
+    if (fits) newest = &each;
+  }
+  if (newest != nullptr) return *newest;
+  if (all.empty()) {
+    return fail(ErrorCode::not_found, file.path(),
+                "has no estimate of a response yet; calibrate the eye, or import one");
+  }
+  return fail(ErrorCode::mismatch, file.path(),
+              fmt::format("has no estimate at {} mm, only at {} mm; state that distance, or calibrate at this one",
+                          *distance_mm, fmt::join(distances, ", ")));
+}
+
+/// The noise that errors of the rows add to a sample.
+double row_sigma(const recon::Response& response, const std::vector<float>& sigma,
+                 const std::vector<hal::ChannelStatus>& status) {
+  if (sigma.empty()) return 0.0;
+  double squares = 0.0;
+  std::size_t entry = 0, rows = 0;
+  for (int m = 0; m < response.rows(); ++m) {
+    const bool good = status[static_cast<std::size_t>(m)] == hal::ChannelStatus::good;
+    rows += good ? 1U : 0U;
+    response.for_each_in_row(m, [&](std::int32_t, double) {
+      const double each = sigma[entry++];
+      if (good) squares += each * each;
+    });
+  }
+  // Of pictures whose pixels are spread evenly from black to white.
+  constexpr double mean_square = 1.0 / 3.0;
+  return rows == 0 ? 0.0 : std::sqrt(mean_square * squares / static_cast<double>(rows));
+}
+
+template <class T>
+std::vector<float> floats(const std::vector<T>& values) {
+  return {values.begin(), values.end()};
+}
+
+MeasuredSensor sensor_of(const calib::Estimate& estimate) {
+  MeasuredSensor sensor;
+  for (const hal::ChannelStatus status : estimate.status) {
+    sensor.masked.push_back(status == hal::ChannelStatus::good ? 0 : 1);
+  }
+  sensor.dark = floats(estimate.dark_level_lsb);
+  // What is masked has none that counts.
+  for (std::size_t m = 0; m < sensor.dark.size(); ++m) {
+    if (sensor.masked[m] != 0) sensor.dark[m] = 0.0F;
+  }
+  // One point is no line.
+  if (estimate.linearity_codes.size() < 2) return sensor;
+  sensor.codes = floats(estimate.linearity_codes);
+  sensor.straightened = floats(estimate.linearity_values);
+  return sensor;
+}
+
+Result<MeasuredRows> load(const calib::EyeFile& file, const calib::StoredEstimate& stored) {
+  calib::Estimate estimate = TRY(file.load_estimate(stored.id));
+  calib::MeasuredResponse measured = TRY(file.load_response(stored.id));
+  const hal::ObjectPlane& plane = file.eye().plane;
+  const std::string which = fmt::format("estimate {}", stored.id);
+  if (measured.response.cols() != plane.pixels()) {
+    return fail(ErrorCode::mismatch, file.path(),
+                fmt::format("says in {} what {} pixels give, expected the {}x{} of its object plane", which,
+                            measured.response.cols(), plane.rows, plane.cols));
+  }
+  std::vector<int> masked;
+  for (std::size_t m = 0; m < estimate.status.size(); ++m) {
+    if (estimate.status[m] != hal::ChannelStatus::good) masked.push_back(static_cast<int>(m));
+  }
+  if (masked.size() == estimate.status.size()) {
+    return fail(ErrorCode::out_of_range, file.path(),
+                fmt::format("has no good channel in {}, of {}; calibrate again", which, masked.size()));
+  }
+  MeasuredEye eye;
+  eye.file = file.path();
+  eye.serial = file.eye().serial;
+  eye.estimate = stored.id;
+  eye.raw_hash = stored.raw_hash;
+  eye.method = std::move(estimate.method);
+  eye.made_unix_s = estimate.made_unix_s;
+  eye.distance_mm = estimate.distance_mm;
+  eye.sensor = sensor_of(estimate);
+  eye.row_sigma = row_sigma(measured.response, measured.sigma, estimate.status);
+  eye.status = std::move(estimate.status);
+  recon::Response response = TRY(std::move(measured.response).with_image(plane.rows, plane.cols));
+  if (!masked.empty()) response = response.without_rows(masked);
+  return MeasuredRows{std::move(response), std::move(eye)};
+}
+
+}  // namespace
+
+std::size_t MeasuredEye::masked() const noexcept {
+  return static_cast<std::size_t>(std::count_if(
+      status.begin(), status.end(), [](hal::ChannelStatus each) { return each != hal::ChannelStatus::good; }));
+}
+
+Result<MeasuredRows> measured_rows(const Board& board) {
+  const auto file = TRY(calib::EyeFile::open(board.eye_path(), calib::EyeFileMode::read));
+  TRY(check_is_of(file, board));
+  MeasuredRows rows = TRY(load(file, TRY(newest_of(file, board.object.distance_mm))));
+  if (!board.source.serial.empty()) TRY(check_serial(rows.eye, board.source.serial));
+  return rows;
+}
+
+Result<MeasuredRows> newest_rows(const std::string& path, std::optional<double> distance_mm) {
+  const auto file = TRY(calib::EyeFile::open(path, calib::EyeFileMode::read));
+  return load(file, TRY(newest_of(file, distance_mm)));
+}
+
+Result<void> check_serial(const MeasuredEye& eye, const std::string& serial) {
+  if (eye.serial.empty() || eye.serial == serial) return {};
+  return fail(ErrorCode::mismatch, eye.file,
+              fmt::format("is of eye '{}', this is eye '{}'; name the file that belongs to it, or calibrate it",
+                          visible_text(eye.serial), visible_text(serial)));
+}
+
+Value value_of(const MeasuredEye* eye) {
+  if (eye == nullptr) return {};
+  return Figures{{"file", eye->file},
+                 {"serial", eye->serial},
+                 {"estimate", eye->estimate},
+                 {"raw_hash", fmt::format("{:016x}", eye->raw_hash)},
+                 {"method", eye->method},
+                 {"made_unix_s", eye->made_unix_s},
+                 {"distance_mm", eye->distance_mm},
+                 {"masked", eye->masked()},
+                 {"dark_levels", !eye->sensor.dark.empty()},
+                 {"linearity_points", eye->sensor.codes.size()},
+                 {"row_sigma", eye->row_sigma}};
+}
+
+std::string provenance_lines(const MeasuredEye& eye) {
+  return fmt::format("eye_file = {}\neye_serial = {}\nestimate = {}\nestimate_raw_hash = {:016x}\n",
+                     visible_text(eye.file), visible_text(eye.serial), eye.estimate, eye.raw_hash);
+}
+
+}  // namespace compueye::firmware

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/eye/board.hpp"
+#include "firmware/pipeline/correction.hpp"
+#include "firmware/text/figures.hpp"
+#include "hal/channel_status.hpp"
+#include "hal/result.hpp"
+#include "recon/problem/response.hpp"
+
+namespace compueye::firmware {
+
+/// What an eye file says of an eye beside its rows, and where it has that from.
+struct MeasuredEye {
+  std::string file;
+  std::string serial;                      ///< of the eye that was measured; empty: not known
+  std::int64_t estimate = 0;               ///< its number in the file
+  std::uint64_t raw_hash = 0;              ///< of the captures that it was made from
+  std::string method;                      ///< of the estimator
+  std::int64_t made_unix_s = 0;            ///< when
+  double distance_mm = 0.0;                ///< that the rows are of
+  std::vector<hal::ChannelStatus> status;  ///< M, by ommatidium
+  MeasuredSensor sensor;                   ///< masks what is not good
+  /// Of a sample in white pixels, from errors of its row's entries, each by itself, in front of a picture whose pixels
+  /// are spread evenly from black to white; root mean square over the good rows. 0: not known.
+  double row_sigma = 0.0;
+
+  [[nodiscard]] std::size_t masked() const noexcept;
+};
+
+struct MeasuredRows {
+  recon::Response response;  ///< M x N, of a picture; rows of channels that are not good are empty
+  MeasuredEye eye;
+};
+
+/// An estimate is of a distance that is no further from its own.
+inline constexpr double same_distance_mm = 0.01;
+
+/// The newest estimate of the board's eye file at the board's distance. Errors: those of calib::EyeFile; mismatch (a
+/// file of another eye or object plane, or of another serial than the board names; no estimate at this distance: those
+/// there are, are named), not_found (no estimate at all), out_of_range (no channel is good).
+[[nodiscard]] hal::Result<MeasuredRows> measured_rows(const Board& board);
+
+/// The newest estimate of a file, at that distance where one is given. Errors: as above.
+[[nodiscard]] hal::Result<MeasuredRows> newest_rows(const std::string& file, std::optional<double> distance_mm);
+
+/// Whether the device in front is the one that was measured. Error mismatch.
+[[nodiscard]] hal::Result<void> check_serial(const MeasuredEye& eye, const std::string& serial);
+
+/// Every figure for programs; null of null.
+[[nodiscard]] Value value_of(const MeasuredEye* eye);
+/// Those that stand under "measured", for people.
+inline constexpr std::string_view measured_sentence =
+    "{measured.file}, estimate {measured.estimate} ({measured.method}) of eye '{measured.serial}' at "
+    "{measured.distance_mm} mm[, {measured.masked} masked]";
+
+/// "eye_file = F.eye" and the other lines, of the header of a recording.
+[[nodiscard]] std::string provenance_lines(const MeasuredEye& eye);
+
+}  // namespace compueye::firmware
