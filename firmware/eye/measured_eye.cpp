@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <numbers>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "calib/eye_file/eye_file.hpp"
-#include "firmware/eye/settings/board_lines.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -20,20 +20,48 @@ using hal::ErrorCode;
 using hal::fail;
 using hal::Result;
 
-/// Distances have sessions of their own, so that the file's is only one of them.
-Result<void> check_is_of(const calib::EyeFile& file, const Board& board) {
-  Board measured = board;
-  measured.eye = file.eye().geometry;
-  measured.object = file.eye().plane;
-  measured.object.distance_mm = board.object.distance_mm;
-  const auto differences = board_differences(board_lines(measured), board);
-  if (!differences.empty()) {
-    return fail(ErrorCode::mismatch, file.path(),
-                fmt::format("is of another eye than that of board {}: {}; name the board that belongs to it, or "
-                            "calibrate this one",
-                            board.name, text_of(differences)));
+/// A number that board.toml has too.
+struct Figure {
+  std::string_view name;
+  double measured, now;
+
+  /// Both may have gone from degrees to radians on different ways.
+  [[nodiscard]] bool differs() const noexcept { return std::abs(measured - now) > 1e-9 * std::abs(now); }
+};
+
+/// "eye.rows was 9 and is 8, ..."; empty: it is the same eye. Distances have estimates of their own, so that the file's
+/// is only one of them.
+std::string differences_of(const calib::EyeIdentity& eye, const Board& board) {
+  constexpr double deg = std::numbers::pi / 180.0;
+  const auto& [serial, g, p] = eye;
+  const hal::EyeGeometry& h = board.eye;
+  const hal::ObjectPlane& q = board.object;
+  std::vector<std::string> differences;
+  if (g.lattice != h.lattice) {
+    differences.push_back(fmt::format("eye.lattice was {} and is {}", hal::name(g.lattice), hal::name(h.lattice)));
   }
-  return {};
+  const auto whole = [](int number) { return static_cast<double>(number); };
+  for (const Figure& each :
+       {Figure{"eye.rows", whole(g.rows), whole(h.rows)}, Figure{"eye.columns", whole(g.columns), whole(h.columns)},
+        Figure{"eye.interommatidial_angle_deg", g.interommatidial_rad / deg, h.interommatidial_rad / deg},
+        Figure{"eye.acceptance_angle_deg", g.acceptance_rad / deg, h.acceptance_rad / deg},
+        Figure{"eye.radius_mm", g.radius_mm, h.radius_mm},
+        Figure{"eye.lens_height_mm", g.lens_height_mm, h.lens_height_mm},
+        Figure{"eye.pitch_mm", g.pitch_mm, h.pitch_mm}, Figure{"object.rows", whole(p.rows), whole(q.rows)},
+        Figure{"object.columns", whole(p.cols), whole(q.cols)}, Figure{"object.width_mm", p.width_mm, q.width_mm},
+        Figure{"object.height_mm", p.height_mm, q.height_mm}}) {
+    if (each.differs())
+      differences.push_back(fmt::format("{} was {:.9g} and is {:.9g}", each.name, each.measured, each.now));
+  }
+  return fmt::format("{}", fmt::join(differences, ", "));
+}
+
+/// A file or a board that does not know the serial has nothing against it.
+Result<void> same_serial(const std::string& file, const std::string& measured, const std::string& serial) {
+  if (measured.empty() || measured == serial) return {};
+  return fail(ErrorCode::mismatch, file,
+              fmt::format("is of eye '{}', this is eye '{}'; name the file that belongs to it, or calibrate it",
+                          visible_text(measured), visible_text(serial)));
 }
 
 Result<calib::StoredEstimate> newest_of(const calib::EyeFile& file, std::optional<double> distance_mm) {
@@ -80,6 +108,10 @@ std::vector<float> floats(const std::vector<T>& values) {
   return {values.begin(), values.end()};
 }
 
+std::string hash_text(std::uint64_t hash) {
+  return fmt::format("{:016x}", hash);
+}
+
 MeasuredSensor sensor_of(const calib::Estimate& estimate) {
   MeasuredSensor sensor;
   for (const hal::ChannelStatus status : estimate.status) {
@@ -119,7 +151,7 @@ Result<MeasuredRows> load(const calib::EyeFile& file, const calib::StoredEstimat
   eye.file = file.path();
   eye.serial = file.eye().serial;
   eye.estimate = stored.id;
-  eye.raw_hash = stored.raw_hash;
+  if (!estimate.sessions.empty()) eye.raw_hash = stored.raw_hash;
   eye.method = std::move(estimate.method);
   eye.made_unix_s = estimate.made_unix_s;
   eye.distance_mm = estimate.distance_mm;
@@ -138,12 +170,22 @@ std::size_t MeasuredEye::masked() const noexcept {
       status.begin(), status.end(), [](hal::ChannelStatus each) { return each != hal::ChannelStatus::good; }));
 }
 
+Result<void> check_is_of(const calib::EyeFile& file, const Board& board) {
+  const std::string differences = differences_of(file.eye(), board);
+  if (!differences.empty()) {
+    return fail(ErrorCode::mismatch, file.path(),
+                fmt::format("is of another eye than that of board {}: {}; name the board that belongs to it, or "
+                            "calibrate this one",
+                            board.name, differences));
+  }
+  return board.source.serial.empty() ? Result<void>()
+                                     : same_serial(file.path(), file.eye().serial, board.source.serial);
+}
+
 Result<MeasuredRows> measured_rows(const Board& board) {
   const auto file = TRY(calib::EyeFile::open(board.eye_path(), calib::EyeFileMode::read));
   TRY(check_is_of(file, board));
-  MeasuredRows rows = TRY(load(file, TRY(newest_of(file, board.object.distance_mm))));
-  if (!board.source.serial.empty()) TRY(check_serial(rows.eye, board.source.serial));
-  return rows;
+  return load(file, TRY(newest_of(file, board.object.distance_mm)));
 }
 
 Result<MeasuredRows> newest_rows(const std::string& path, std::optional<double> distance_mm) {
@@ -151,11 +193,12 @@ Result<MeasuredRows> newest_rows(const std::string& path, std::optional<double> 
   return load(file, TRY(newest_of(file, distance_mm)));
 }
 
+double fit_sigma(double noise_sigma, const MeasuredEye* eye) noexcept {
+  return eye == nullptr ? noise_sigma : std::hypot(noise_sigma, eye->row_sigma);
+}
+
 Result<void> check_serial(const MeasuredEye& eye, const std::string& serial) {
-  if (eye.serial.empty() || eye.serial == serial) return {};
-  return fail(ErrorCode::mismatch, eye.file,
-              fmt::format("is of eye '{}', this is eye '{}'; name the file that belongs to it, or calibrate it",
-                          visible_text(eye.serial), visible_text(serial)));
+  return same_serial(eye.file, eye.serial, serial);
 }
 
 Value value_of(const MeasuredEye* eye) {
@@ -163,7 +206,7 @@ Value value_of(const MeasuredEye* eye) {
   return Figures{{"file", eye->file},
                  {"serial", eye->serial},
                  {"estimate", eye->estimate},
-                 {"raw_hash", fmt::format("{:016x}", eye->raw_hash)},
+                 {"raw_hash", eye->raw_hash ? Value(hash_text(*eye->raw_hash)) : Value()},
                  {"method", eye->method},
                  {"made_unix_s", eye->made_unix_s},
                  {"distance_mm", eye->distance_mm},
@@ -174,8 +217,8 @@ Value value_of(const MeasuredEye* eye) {
 }
 
 std::string provenance_lines(const MeasuredEye& eye) {
-  return fmt::format("eye_file = {}\neye_serial = {}\nestimate = {}\nestimate_raw_hash = {:016x}\n",
-                     visible_text(eye.file), visible_text(eye.serial), eye.estimate, eye.raw_hash);
+  return fmt::format("eye_file = {}\neye_serial = {}\nestimate = {}\nestimate_raw_hash = {}\n", visible_text(eye.file),
+                     visible_text(eye.serial), eye.estimate, eye.raw_hash ? hash_text(*eye.raw_hash) : "none");
 }
 
 }  // namespace compueye::firmware

@@ -14,6 +14,10 @@
 #include "hal/result.hpp"
 #include "recon/problem/response.hpp"
 
+namespace compueye::calib {
+class EyeFile;
+}
+
 namespace compueye::firmware {
 
 /// What an eye file says of an eye beside its rows, and where it has that from.
@@ -21,7 +25,7 @@ struct MeasuredEye {
   std::string file;
   std::string serial;                      ///< of the eye that was measured; empty: not known
   std::int64_t estimate = 0;               ///< its number in the file
-  std::uint64_t raw_hash = 0;              ///< of the captures that it was made from
+  std::optional<std::uint64_t> raw_hash;   ///< of the captures that it was made from; nothing: from elsewhere
   std::string method;                      ///< of the estimator
   std::int64_t made_unix_s = 0;            ///< when
   double distance_mm = 0.0;                ///< that the rows are of
@@ -42,6 +46,10 @@ struct MeasuredRows {
 /// An estimate is of a distance that is no further from its own.
 inline constexpr double same_distance_mm = 0.01;
 
+/// Whether a file is of the board's eye and object plane, at whatever distance, and of the serial that the board names
+/// if it does. Error mismatch.
+[[nodiscard]] hal::Result<void> check_is_of(const calib::EyeFile& file, const Board& board);
+
 /// The newest estimate of the board's eye file at the board's distance. Errors: those of calib::EyeFile; mismatch (a
 /// file of another eye or object plane, or of another serial than the board names; no estimate at this distance: those
 /// there are, are named), not_found (no estimate at all), out_of_range (no channel is good).
@@ -49,6 +57,11 @@ inline constexpr double same_distance_mm = 0.01;
 
 /// The newest estimate of a file, at that distance where one is given. Errors: as above.
 [[nodiscard]] hal::Result<MeasuredRows> newest_rows(const std::string& file, std::optional<double> distance_mm);
+
+/// By how much a sample may differ from what the response makes of the right picture: its noise, and the errors of its
+/// row. Whether samples are explained is asked with this; lambda is not chosen by it: pictures are darker than the one
+/// of row_sigma, and came out up to three times worse.
+[[nodiscard]] double fit_sigma(double noise_sigma, const MeasuredEye* eye) noexcept;
 
 /// Whether the device in front is the one that was measured. Error mismatch.
 [[nodiscard]] hal::Result<void> check_serial(const MeasuredEye& eye, const std::string& serial);

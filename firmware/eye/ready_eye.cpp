@@ -143,7 +143,8 @@ bool ReadyEye::stands_above_noise(std::span<const float> y, std::span<const floa
 
 hal::Result<std::string> ReadyEye::choose_lambda_by(std::span<const float> y, std::span<const float> weights,
                                                     const LivingResponse& living, const recon::Progress& progress) {
-  if (const double misfit = misfit_of(*reconstructor_, lambda_.sigma, y, weights); misfit > 0.0) {
+  if (const double misfit = misfit_of(*reconstructor_, fit_sigma(lambda_.sigma, measured()), y, weights);
+      misfit > 0.0) {
     return "the response does not explain the samples, whose residual is " + significant(misfit, 3) +
            " times what noise does";
   }

@@ -60,8 +60,8 @@ constexpr std::array<FolderRule, 27> rules{{
      "hal recon recon/core calib calib/eye_file sim drivers/protocol drivers/device drivers/transport firmware/files "
      "firmware/pipeline firmware/text firmware/eye",
      "toml++ fmt xxhash", false, none, false,
-     "firmware/eye: hal, recon, calib and its eye file, sim, drivers, firmware/files, text and pipeline (its correction), toml++, fmt, "
-     "xxhash"},
+     "firmware/eye: hal, recon, calib and its eye file, sim, drivers, firmware/files, text and pipeline (its "
+     "correction), toml++, fmt, xxhash"},
     {"firmware/operating_points",
      "hal recon recon/core firmware/eye firmware/files firmware/pipeline firmware/text firmware/operating_points",
      "fmt nlohmann-json xxhash", false, none, false,

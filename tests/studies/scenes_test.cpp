@@ -2,9 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "calib/plausible_response.hpp"
 #include "tests/studies/boards.hpp"
 
 using namespace compueye;
@@ -20,6 +22,25 @@ std::vector<EvaluationScene> scenes_of(const Board& board, const std::vector<std
 }
 
 }  // namespace
+
+TEST_CASE("of an eye whose rows were measured the signals are what these make of the pictures") {
+  const Board board = board_8x8();
+  const auto rows = calib::plausible_response(board.eye, board.object, {}, 1).value();
+  const auto scenes = make_evaluation_scenes(board, {"dots"}, true, test::go_on, &rows);
+  REQUIRE(scenes.has_value());
+  const EvaluationScene &scene = scenes->front(), drawn = scenes_of(board, {"dots"}).front();
+  CHECK(scene.truth.pixels == drawn.truth.pixels);
+  REQUIRE(scene.moving.size() == moving_frames);
+  double off = 0.0;
+  for (int m = 0; m < 64; ++m) {
+    double sum = 0.0;
+    rows.for_each_in_row(
+        m, [&](std::int32_t n, double a) { sum += a * double{scene.truth.pixels[static_cast<std::size_t>(n)]}; });
+    CHECK(scene.signals[static_cast<std::size_t>(m)] == doctest::Approx(sum));
+    off = std::max(off, std::abs(sum - drawn.signals[static_cast<std::size_t>(m)]));
+  }
+  CHECK(off > 0.05);
+}
 
 TEST_CASE("a dozen scenes of different seeds, none of which a rule was fitted on") {
   const auto scenes = scenes_of(board_8x8(), {"line-art", "phantom", "dots"});

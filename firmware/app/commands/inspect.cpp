@@ -28,7 +28,7 @@ using hal::Result;
 
 /// The command line of `compueye inspect`.
 struct InspectRequest {
-  std::string what;         ///< a .npy or .mtx file, a board's folder or its board.toml
+  std::string what;         ///< a .npy, .mtx or .eye file, a board's folder or its board.toml
   std::string as = "auto";  ///< auto, array or response; for .npy
   std::string size;         ///< "HxW" of the picture behind a response; empty: unknown
 };
@@ -90,12 +90,16 @@ Result<void> add_figures(const InspectRequest& o, const recon::Progress& progres
   if (fs::is_directory(path, error) || ending == ".toml") return inspect_board(o, progress, figures);
   if (ending == ".npy") return inspect_array(o, progress, figures);
   if (ending == ".mtx") return inspect_matrix(o, progress, figures);
+  if (ending == ".eye") {
+    figures.add("kind", "eye file");
+    return add_eye_file_figures(o.what, figures);
+  }
   if (!fs::exists(path, error)) {
-    return fail(ErrorCode::not_found, o.what, "does not exist, expected a .npy or .mtx file or a board's folder");
+    return fail(ErrorCode::not_found, o.what, "does not exist, expected a .npy, .mtx or .eye file or a board's folder");
   }
   return fail(ErrorCode::usage, o.what,
               (ending.empty() ? "has no extension" : "ends in '" + ending + "'") +
-                  ", expected a .npy or .mtx file or a board's folder");
+                  ", expected a .npy, .mtx or .eye file or a board's folder");
 }
 
 Result<void> inspect(const InspectRequest& o, Session& session) {
@@ -110,7 +114,7 @@ Result<void> inspect(const InspectRequest& o, Session& session) {
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<InspectRequest>();
-  options.add("what", o->what, "a .npy or .mtx file, or the folder of a board").required().type("FILE");
+  options.add("what", o->what, "a .npy, .mtx or .eye file, or the folder of a board").required().type("FILE");
   options
       .add("--size", o->size,
            "rows and columns of the picture behind a response: adds mirror symmetry and the memory of admm")
@@ -135,13 +139,14 @@ std::string footer() {
          "  compueye inspect A.mtx --size 16x16\n"
          "  compueye inspect y.npy\n"
          "  compueye inspect A.npy --as response\n"
+         "  compueye inspect F.eye\n"
          "  compueye inspect boards/sim-8x8 --json";
 }
 
 }  // namespace
 
 extern const Command inspect_command;
-const Command inspect_command{"inspect", "the key figures of a response, of samples, pictures or a board",
-                              OnSignal::gives_up, declare, footer};
+const Command inspect_command{"inspect", "the key figures of a matrix, array, board or eye file", OnSignal::gives_up,
+                              declare, footer};
 
 }  // namespace compueye::firmware

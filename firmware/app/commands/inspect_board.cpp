@@ -13,7 +13,6 @@
 #include <variant>
 #include <vector>
 
-#include "calib/nominal.hpp"
 #include "firmware/eye/ready_eye.hpp"
 #include "firmware/eye/settings/setting.hpp"
 #include "firmware/files/factor_cache.hpp"
@@ -169,10 +168,11 @@ Result<void> add_board_figures(const Board& board, const recon::Progress& progre
   add_eye(board, figures);
   add_sensor(board, figures);
   add_solver(board, figures);
-  const recon::Response nominal = TRY(calib::nominal_response(board.eye, board.object, progress));
+  const LivingResponse living = TRY(living_response(board, progress));
+  figures.add("measured", value_of(living.measured.get()));
+  if (living.measured) figures.line("measured", measured_sentence);
   const std::optional<recon::OperatorKind> op = board.plan.op;
-  const recon::Response a =
-      recon::quantised(nominal.without_rows(board.sensor.dead), op.value_or(recon::OperatorKind::csr));
+  const recon::Response a = recon::quantised(living.response, op.value_or(recon::OperatorKind::csr));
   const auto seeing = static_cast<int>(a.seeing_rows().size());
   figures.add("seeing_channels", seeing, "seeing channels", "{:,} of " + grouped(a.rows()));
   figures.add("entries", a.stored_entries(), "response entries", "{:,}");

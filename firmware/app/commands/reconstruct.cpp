@@ -31,9 +31,13 @@ using hal::Result;
 
 /// What was read, ready for the solver.
 struct Inputs {
+  PictureSize size;
+  std::optional<MeasuredEye> measured;
   std::optional<recon::Response> response;  // rows scaled by the weights
   FrameInputs frames;
   std::optional<Truth> truth;
+
+  [[nodiscard]] const MeasuredEye* measured_eye() const noexcept { return measured ? &*measured : nullptr; }
 };
 
 Result<void> check_size(const ReconstructOptions& o, const recon::Response& response, PictureSize size) {
@@ -43,12 +47,12 @@ Result<void> check_size(const ReconstructOptions& o, const recon::Response& resp
   const std::string hint = side * side == response.cols() ? fmt::format(", for example {0}x{0}", side) : "";
   return fail(ErrorCode::mismatch, "--size",
               fmt::format("{} has {} pixels, expected {} as {} has columns{}", o.size, pixels, response.cols(),
-                          o.response, hint));
+                          o.response_file(), hint));
 }
 
 Result<void> check_sees(const ReconstructOptions& o, const recon::Response& response, bool weighted) {
   if (!response.seeing_rows().empty()) return {};
-  return fail(ErrorCode::out_of_range, o.response,
+  return fail(ErrorCode::out_of_range, o.response_file(),
               weighted ? "has no row with a non-zero entry and a weight above 0, expected a channel that sees something"
                        : "has no row with a non-zero entry, expected an eye that sees something");
 }
@@ -63,18 +67,26 @@ Result<void> check_range(const std::string& file, const recon::Response& respons
                           squares));
 }
 
+Result<recon::Response> read_rows(const ReconstructOptions& o, Inputs& inputs) {
+  if (!o.from_eye_file()) return read_response(o.response);
+  MeasuredRows rows = TRY(newest_rows(o.response_file(), o.distance_mm));
+  inputs.measured = std::move(rows.eye);
+  return std::move(rows.response);
+}
+
 Result<Inputs> read_inputs(const ReconstructOptions& o, const ProblemStatement& problem, const Session& session) {
-  const PictureSize size = problem.size;
   Inputs inputs;
-  recon::Response response = TRY(read_response(o.response));
+  recon::Response response = TRY(read_rows(o, inputs));
   TRY(session.check_stop());
+  const PictureSize size = problem.size.value_or(PictureSize{response.image_rows(), response.image_cols()});
+  inputs.size = size;
   TRY(check_size(o, response, size));
   response = TRY(std::move(response).with_image(size.rows, size.cols));
   TRY(check_sees(o, response, false));
   inputs.frames = TRY(read_frame_inputs(response, o.samples, o.weights));
   inputs.response = scaled_response(std::move(response), inputs.frames);
   TRY(check_sees(o, *inputs.response, true));
-  TRY(check_range(o.response, *inputs.response));
+  TRY(check_range(o.response_file(), *inputs.response));
   if (!o.truth.empty()) inputs.truth = TRY(Truth::read(o.truth, size, inputs.frames.frames));
   return inputs;
 }
@@ -93,7 +105,7 @@ Result<recon::LambdaByRisk> lambda_from_samples(const ReconstructOptions& o, con
 std::string place_of(const ReconstructOptions& o, const std::string& place) {
   if (place == "operator") return "--operator";
   if (o.settings.has("--" + place)) return "--" + place;
-  return place == "lambda" || place == "rho" ? place + " by rule" : o.response;
+  return place == "lambda" || place == "rho" ? place + " by rule" : o.response_file();
 }
 
 /// What weighs little in every frame is scaled in A and y, and so would be its residual.
@@ -143,11 +155,13 @@ Result<void> check_health(std::span<const FrameRecord> records) {
 /// Solves every frame in order and hands the pictures to `outputs`. Errors: interrupted; out_of_range when the numbers
 /// of every frame leave the range of the precision; those of `outputs`.
 Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& reconstructor,
-                                                    std::optional<double> sigma, const FrameInputs& inputs,
-                                                    const Truth* truth, PictureOutputs& outputs, Session& session) {
+                                                    std::optional<double> sigma, const Inputs& read,
+                                                    PictureOutputs& outputs, Session& session) {
+  const FrameInputs& inputs = read.frames;
+  const Truth* const truth = read.truth ? &*read.truth : nullptr;
   const recon::AlignedWorkspace workspace(reconstructor.required_bytes());
   std::optional<recon::ResponseFitter> fitter;
-  if (sigma) fitter.emplace(reconstructor, *sigma);
+  if (sigma) fitter.emplace(reconstructor, fit_sigma(*sigma, read.measured_eye()));
   std::vector<float> picture(static_cast<std::size_t>(reconstructor.pixels()));
   std::vector<FrameRecord> records;
   records.reserve(static_cast<std::size_t>(inputs.frames));
@@ -178,8 +192,8 @@ Result<std::vector<FrameRecord>> reconstruct_frames(const recon::Reconstructor& 
 Result<void> reconstruct(const ReconstructOptions& o, Session& session) {
   const ProblemStatement problem = TRY(problem_of(o));
   Inputs inputs = TRY(read_inputs(o, problem, session));
-  PictureOutputs outputs = TRY(PictureOutputs::create(
-      {o.out, o.png, problem.size, inputs.frames.frames, inputs.frames.has_frame_axis}, session));
+  PictureOutputs outputs = TRY(
+      PictureOutputs::create({o.out, o.png, inputs.size, inputs.frames.frames, inputs.frames.has_frame_axis}, session));
 
   const std::int64_t began_ns = session.clock().now_ns();
   auto made = set_up(o, problem.board, inputs, session.progress());
@@ -189,11 +203,11 @@ Result<void> reconstruct(const ReconstructOptions& o, Session& session) {
   const double setup_s = static_cast<double>(session.clock().now_ns() - began_ns) * 1e-9;
   inputs.response.reset();
 
-  const std::vector<FrameRecord> records = TRY(reconstruct_frames(
-      reconstructor, problem.board.sigma, inputs.frames, inputs.truth ? &*inputs.truth : nullptr, outputs, session));
+  const std::vector<FrameRecord> records =
+      TRY(reconstruct_frames(reconstructor, problem.board.sigma, inputs, outputs, session));
   TRY(session.seal());
   TRY(outputs.commit());
-  return session.print(figures_of(o, problem.board.sigma, reconstructor, setup_s, records));
+  return session.print(figures_of(o, inputs.measured_eye(), problem.board.sigma, reconstructor, setup_s, records));
 }
 
 Action declare(OptionList& options) {

@@ -17,12 +17,16 @@ namespace compueye::firmware {
 namespace {
 
 void add_files(OptionList& options, ReconstructOptions& o) {
-  options.add("--response", o.response, "measurement matrix A (M, N): .npy dense or .mtx sparse")
-      .required()
+  options
+      .add("--response", o.response,
+           "measurement matrix A (M, N): .npy dense, .mtx sparse, or .eye with its newest one")
       .type("FILE");
+  options.add("--eye", o.eye, "the same, for an eye file of whatever name").type("FILE").excludes("--response");
+  options.add("--distance", o.distance_mm, "of an eye file's estimate in mm (default: the newest of all)")
+      .type("MM")
+      .where(length_mm());
   options.add("--samples", o.samples, "y: .npy of (M,) or (frames, M), in white pixels").required().type("FILE");
-  options.add("--size", o.size, "rows and columns of the picture, H times W = N")
-      .required()
+  options.add("--size", o.size, "rows and columns of the picture, H times W = N; an eye file has them")
       .type("HxW")
       .where(picture_size());
   options.add("--weights", o.weights, "weights >= 0: .npy of (M,) or (frames, M); 0 = channel missing").type("FILE");
@@ -71,7 +75,7 @@ hal::Result<void> check_ending(const char* option, const std::string& file, std:
 
 hal::Result<void> check_not_input(const char* option, const std::string& file, const ReconstructOptions& o) {
   std::error_code ignored;
-  for (const std::string& input : {o.response, o.samples, o.weights, o.truth}) {
+  for (const std::string& input : {o.response_file(), o.samples, o.weights, o.truth}) {
     if (!file.empty() && std::filesystem::equivalent(file, input, ignored)) {
       return usage(option, "is '" + file + "', which is read as well, expected another file");
     }
@@ -95,6 +99,14 @@ bool is_direct(const recon::SolverRow& row) {
 }
 bool has_rank(const recon::SolverRow& row) {
   return row.rank == recon::RankUse::singular_values;
+}
+
+hal::Result<void> check_response(const ReconstructOptions& o) {
+  TRY(need(!o.response_file().empty(), "--response", "is missing, for example --response A.mtx, or --eye F.eye"));
+  TRY(need(o.from_eye_file() || !o.size.empty(), "--size",
+           "is missing, for example --size 16x16; only an eye file says it by itself"));
+  return need(o.from_eye_file() || !o.distance_mm, "--distance",
+              "chooses among the estimates of an eye file, add --eye");
 }
 
 hal::Result<void> check_direct(const Overrides& given, const Board& board) {
@@ -204,11 +216,17 @@ std::string reconstruct_footer() {
          "                       --iterations 2000 --nonnegative\n"
          "  compueye reconstruct --response A.npy --samples y.npy --size 160x160 --basis dct --box 0,1 --sigma 0.32 "
          "\\\n"
-         "                       --weights w.npy --out x.npy --truth truth.npy --json";
+         "                       --weights w.npy --out x.npy --truth truth.npy --json\n"
+         "  compueye reconstruct --eye F.eye --samples y.npy --sigma 0.002 --box 0,1 --png x.png";
+}
+
+bool ReconstructOptions::from_eye_file() const {
+  return !eye.empty() || std::filesystem::path(response).extension() == ".eye";
 }
 
 hal::Result<ProblemStatement> problem_of(const ReconstructOptions& o) {
-  ProblemStatement problem{*picture_size_from(o.size), {}};
+  TRY(check_response(o));
+  ProblemStatement problem{picture_size_from(o.size), {}};
   Board& board = problem.board;
   TRY(o.settings.apply(board));
   TRY(check_solver_options(o, board));

@@ -118,7 +118,7 @@ void add_written(const ReconstructOptions& o, std::span<const FrameRecord> frame
 void add_problem(const ReconstructOptions& o, std::optional<double> sigma, const recon::Reconstructor& r, Figures& f) {
   const bool factor = recon::uses_factor(r.operating_point().solver);
   const bool box = r.objective().constraint == recon::ConstraintKind::box;
-  f.add("response", o.response).add("samples", o.samples);
+  f.add("response", o.response_file()).add("samples", o.samples);
   f.add("weights", o.weights.empty() ? Value() : Value(o.weights));
   f.add("operating_point", point_figures(r.operating_point()), "operating point",
         "{operating_point.solver}, {operating_point.basis} basis, A as {operating_point.operator}, "
@@ -187,12 +187,14 @@ void add_passed_over(std::span<const FrameRecord> frames, Figures& f) {
 
 }  // namespace
 
-Figures figures_of(const ReconstructOptions& o, std::optional<double> sigma, const recon::Reconstructor& r,
-                   double setup_s, std::span<const FrameRecord> frames) {
+Figures figures_of(const ReconstructOptions& o, const MeasuredEye* measured, std::optional<double> sigma,
+                   const recon::Reconstructor& r, double setup_s, std::span<const FrameRecord> frames) {
   const std::vector<FrameRecord> solved = without_invalid(frames);
   const std::string of_frames = solved.size() > 1 ? " (median)" : "";
   Figures f;
   add_problem(o, sigma, r, f);
+  f.add("measured", value_of(measured));
+  if (measured != nullptr) f.line("measured", measured_sentence);
   f.add("frames", frames.size(), "frames", "{:,}");
   f.add("setup_s", setup_s, "set-up", "{:duration}");
   f.add("median_frame_ms", median(solved, [](const FrameRecord& each) { return each.solve_ms; }), "time a frame",

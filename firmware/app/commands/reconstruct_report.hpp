@@ -4,6 +4,7 @@
 #include <span>
 
 #include "firmware/app/commands/reconstruct_options.hpp"
+#include "firmware/eye/measured_eye.hpp"
 #include "firmware/eye/picture_quality.hpp"
 #include "firmware/text/figures.hpp"
 #include "recon/reconstructor.hpp"
@@ -21,9 +22,10 @@ struct FrameRecord {
 };
 
 /// Everything that `compueye reconstruct` tells of a run: of `frames`, whose records they are (at least one that is not
-/// invalid), with every rule that `reconstructor` resolved. `sigma`: what lambda is from, if not by hand.
-[[nodiscard]] Figures figures_of(const ReconstructOptions& options, std::optional<double> sigma,
-                                 const recon::Reconstructor& reconstructor, double setup_s,
+/// invalid), with every rule that `reconstructor` resolved. `sigma`: what lambda is from, if not by hand. `measured`:
+/// null unless the response is from an eye file.
+[[nodiscard]] Figures figures_of(const ReconstructOptions& options, const MeasuredEye* measured,
+                                 std::optional<double> sigma, const recon::Reconstructor& reconstructor, double setup_s,
                                  std::span<const FrameRecord> frames);
 
 }  // namespace compueye::firmware

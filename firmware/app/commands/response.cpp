@@ -104,8 +104,9 @@ Action declare(OptionList& options) {
 }
 
 std::string footer() {
-  return "a_mj is the share of pixel j, 0 to 1, that the cone of ommatidium m covers on the object plane. .eye files "
-         "come later.\n--as-measured tilts every axis (0.05 deg std), spreads gains (2 %), softens the edge of every "
+  return "a_mj is the share of pixel j, 0 to 1, that the cone of ommatidium m covers on the object plane. `compueye "
+         "import` takes it into an eye file.\n--as-measured tilts every axis (0.05 deg std), spreads gains (2 %), "
+         "softens the edge of every "
          "field (over 30 % of the\nhalf angle) and makes its sensitivity uneven (3 % rms), so rows are neither binary "
          "nor mirror images of each other.\nCtrl-C leaves no file behind. Exit codes: 0 done, 1 failed, 2 wrong "
          "usage.\n\n"

@@ -17,6 +17,7 @@
 #include "firmware/app/commands/run_report.hpp"
 #include "firmware/app/commands/run_source.hpp"
 #include "firmware/app/option_list.hpp"
+#include "firmware/eye/channel_detector.hpp"
 #include "firmware/eye/ready_eye.hpp"
 #include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/simulated_board.hpp"
@@ -50,16 +51,6 @@ class ScreenLease {
  private:
   Session& session_;
 };
-
-/// As many may be found as a frame may lack besides.
-recon::ChannelDetector channel_detector(const Board& board, std::vector<std::uint8_t> sees) {
-  const auto seeing = static_cast<double>(std::count(sees.begin(), sees.end(), 1));
-  for (const int dead : board.sensor.dead) sees[static_cast<std::size_t>(dead)] = 0;
-  recon::ChannelDetectorSettings settings;
-  settings.sigma = board.noise_sigma();
-  settings.most = static_cast<std::size_t>(std::ceil(board.sensor.max_missing_share * seeing + 1e-9));
-  return {board.eye.rows, board.eye.columns, sees, settings};
-}
 
 /// From the board to the report, step by step; each step is a member, and what the next ones need stays here.
 class BoardRun {
@@ -187,10 +178,11 @@ Result<void> BoardRun::choose_eye(const recon::Progress& ask) {
         why = sentence(choice, *points);
       }
     }
+    const std::string eye = board_.overrules("board", "eye") ? " --eye " + board_.eye_file : std::string();
     choice_notes_.push_back(
-        fmt::format("no stored points to choose from, so iterations are fitted by trial; `compueye pareto --board {}` "
-                    "measures them: {}",
-                    options_.board, why));
+        fmt::format("no stored points to choose from, so iterations are fitted by trial; `compueye pareto --board "
+                    "{}{}` measures them: {}",
+                    options_.board, eye, why));
   }
   ladder_.eyes.push_back(TRY(ReadyEye::make(board_, living, board_.cache(), ask)));
   return {};
@@ -283,9 +275,9 @@ Result<void> BoardRun::run_pipeline() {
 }
 
 Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, FrameObserver& observer) {
-  FitWatch fit(eye().reconstructor(), board_.noise_sigma(), observer);
+  FitWatch fit(eye().reconstructor(), fit_sigma(board_.noise_sigma(), eye().measured()), observer);
   std::optional<ChannelWatch> channels;
-  if (board_.find_dead) channels.emplace(solver, eye().reconstructor(), channel_detector(board_, eye().sees()));
+  if (board_.find_dead) channels.emplace(solver, eye().reconstructor(), channel_detector(board_, eye()));
   FrameSolver& watched = channels ? static_cast<FrameSolver&>(*channels) : solver;
   auto pipeline =
       TRY(Pipeline::create(pipeline_settings(), source_->source(), watched, *sinks.all, session_.clock(), &fit));

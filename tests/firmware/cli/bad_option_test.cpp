@@ -27,7 +27,7 @@ TEST_CASE("misspelt commands and options name the nearest that exists") {
       {"reconstruct --response A.npy --lamda=3", "--lamda", {"--lambda?"}},
       {"response --bord x", "--bord", {"--board?"}},
       {"inspect A.npy --sizes 2x2", "--sizes", {"--size?"}},
-      {"reconstruct", "--response", {}},
+      {"reconstruct", "--samples", {}},
       {"response", "--board", {}},
       {"inspect", "what", {}},
       {"inspect --as picture A.npy", "--as", {"picture", "auto", "array", "response"}},

@@ -126,11 +126,11 @@ TEST_CASE("a Matrix Market file that cannot be used is refused with its line") {
 
 TEST_CASE("files of another kind are refused with what is accepted") {
   const ScratchProblem problem;
-  problem.folder().file("A.eye", "SQLite");
+  problem.folder().file("A.mat", "SQLite");
   problem.folder().file("A.txt", "1 2 3");
-  check_refused(problem, "reconstruct --response A.eye --samples y.npy --size 2x2 --sigma 1", ErrorCode::usage, "A.eye",
-                {".eye", ".npy", ".mtx"});
-  check_refused(problem, "inspect A.eye", ErrorCode::usage, "A.eye", {".eye", ".npy", ".mtx"});
+  check_refused(problem, "reconstruct --response A.mat --samples y.npy --size 2x2 --sigma 1", ErrorCode::usage, "A.mat",
+                {".mat", ".npy", ".mtx"});
+  check_refused(problem, "inspect A.mat", ErrorCode::usage, "A.mat", {".mat", ".npy", ".mtx"});
   check_refused(problem, "inspect A.txt", ErrorCode::usage, "A.txt", {".txt", ".npy"});
   check_refused(problem, "inspect missing", ErrorCode::not_found, "missing", {".npy", ".mtx"});
   check_refused(problem, "inspect missing.npy", ErrorCode::not_found, "missing.npy", {});

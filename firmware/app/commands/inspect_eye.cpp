@@ -1,0 +1,189 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <ctime>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "calib/eye_file/eye_file.hpp"
+#include "firmware/app/commands/inspect.hpp"
+#include "firmware/text/words.hpp"
+#include "hal/try.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::Result;
+
+std::string utc(std::int64_t unix_s) {
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(unix_s)));
+}
+
+/// NaN counts for nothing.
+Value median(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  if (values.empty()) return {};
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void add_eye(const calib::EyeIdentity& eye, Figures& f) {
+  constexpr double deg = std::numbers::pi / 180.0;
+  const hal::EyeGeometry& g = eye.geometry;
+  f.add("serial", eye.serial, "eye", "'{serial}'");
+  f.add("eye",
+        Figures{{"lattice", hal::name(g.lattice)},
+                {"rows", g.rows},
+                {"columns", g.columns},
+                {"interommatidial_deg", g.interommatidial_rad / deg},
+                {"acceptance_deg", g.acceptance_rad / deg},
+                {"radius_mm", g.radius_mm},
+                {"lens_height_mm", g.lens_height_mm},
+                {"pitch_mm", g.pitch_mm}},
+        "as designed",
+        "{eye.rows}x{eye.columns} ommatidia, {eye.lattice} lattice, {eye.interommatidial_deg:6} deg apart, "
+        "{eye.acceptance_deg:6} deg acceptance");
+  const hal::ObjectPlane& p = eye.plane;
+  f.add("object",
+        Figures{{"rows", p.rows},
+                {"cols", p.cols},
+                {"width_mm", p.width_mm},
+                {"height_mm", p.height_mm},
+                {"distance_mm", p.distance_mm}},
+        "object", "{object.rows}x{object.cols} pixels on {object.height_mm}x{object.width_mm} mm");
+}
+
+Result<Figures> figures_of(const calib::EyeFile& file, const calib::StoredSession& session) {
+  const calib::Session& s = session.begun;
+  const auto hash = [](const calib::SessionEnd& end) { return fmt::format("{:016x}", end.raw_hash); };
+  return Figures{{"id", session.id},
+                 {"serial", s.serial},
+                 {"firmware", s.firmware},
+                 {"started_unix_s", s.started_unix_s},
+                 {"started", utc(s.started_unix_s)},
+                 {"distance_mm", s.distance_mm},
+                 {"bits", s.bits},
+                 {"pattern_generator", s.pattern_generator},
+                 {"seed", s.seed},
+                 {"program", s.program},
+                 {"captures", TRY(file.capture_count(session.id))},
+                 {"ended", session.end.has_value()},
+                 {"raw_hash", session.end ? Value(hash(*session.end)) : Value()}};
+}
+
+Result<void> add_sessions(const calib::EyeFile& file, Figures& f) {
+  Value::List sessions;
+  for (const calib::StoredSession& session : TRY(file.sessions())) sessions.push_back(TRY(figures_of(file, session)));
+  const std::size_t count = sessions.size();
+  f.add("sessions", std::move(sessions), "sessions", "{:count}");
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto of = [i](std::string_view key) { return fmt::format("{{sessions.{}.{}}}", i, key); };
+    f.line(f.sentence("session " + of("id")),
+           of("captures") + " captures at " + of("distance_mm") + " mm, begun " + of("started") +
+               fmt::format(", {{sessions.{}.ended:'ended'|cut off or under way}}", i));
+  }
+  return {};
+}
+
+/// What was not determined is null.
+Value determined(double value) {
+  return std::isnan(value) ? Value() : Value(value);
+}
+
+Figures named(const std::vector<calib::NamedNumber>& numbers) {
+  Figures figures;
+  for (const calib::NamedNumber& each : numbers) figures.add(visible_text(each.name), determined(each.value));
+  return figures;
+}
+
+/// A figure of all channels by its median.
+Figures medians(const std::vector<calib::NamedColumn>& columns) {
+  Figures figures;
+  for (const calib::NamedColumn& each : columns) figures.add(visible_text(each.name), median(each.values));
+  return figures;
+}
+
+Figures counts(const std::vector<hal::ChannelStatus>& channels) {
+  Figures figures;
+  for (const hal::NamedChannelStatus& each : hal::channel_statuses()) {
+    figures.add(each.name, std::count(channels.begin(), channels.end(), each.status));
+  }
+  return figures;
+}
+
+Figures figures_of(const calib::StoredEstimate& stored, const calib::Estimate& e) {
+  Value::List sessions(e.sessions.begin(), e.sessions.end());
+  return {{"id", stored.id},
+          {"parent", e.parent},
+          {"sessions", std::move(sessions)},
+          {"made_unix_s", e.made_unix_s},
+          {"made", utc(e.made_unix_s)},
+          {"program", e.program},
+          {"method", e.method},
+          {"distance_mm", e.distance_mm},
+          {"raw_hash", fmt::format("{:016x}", stored.raw_hash)},
+          {"channels", counts(e.status)},
+          {"median_chi2", median(e.chi2)},
+          {"median_dark_level_lsb", median(e.dark_level_lsb)},
+          {"linearity_points", e.linearity_codes.size()},
+          {"shared", named(e.shared)},
+          {"kappas", named(e.kappas)},
+          {"sensor", named(e.sensor)},
+          {"median_channel_sensor", medians(e.channel_sensor)}};
+}
+
+/// Relative, as the estimate itself has it; null where its sigmas are not known.
+Value row_error(const calib::MeasuredResponse& measured) {
+  if (measured.sigma.empty()) return {};
+  std::vector<double> errors;
+  std::size_t entry = 0;
+  for (int m = 0; m < measured.response.rows(); ++m) {
+    double squares = 0.0, error = 0.0;
+    measured.response.for_each_in_row(m, [&](std::int32_t, double value) {
+      const double sigma = measured.sigma[entry++];
+      squares += value * value;
+      error += sigma * sigma;
+    });
+    if (squares > 0.0) errors.push_back(std::sqrt(error / squares));
+  }
+  return median(std::move(errors));
+}
+
+void add_lines(const Figures& estimate, std::size_t i, Figures& f) {
+  const auto of = [i](std::string_view key) { return fmt::format("{{estimates.{}.{}}}", i, key); };
+  f.line(f.sentence("estimate " + of("id")), of("method") + " at " + of("distance_mm") + " mm, made " + of("made") +
+                                                 "[ from sessions " + of("sessions") + "]");
+  f.line("  channels", of("channels"));
+  f.line("  chi^2", fmt::format("{{estimates.{}.median_chi2:3}} (median a held-out sample)", i));
+  for (const auto& [key, label] : {std::pair{"kappas", "  kappa"}, {"sensor", "  EMVA 1288"}, {"shared", "  shared"}}) {
+    const Value* numbers = estimate.find(key);
+    if (numbers != nullptr && !numbers->says_nothing()) f.line(label, of(key));
+  }
+}
+
+}  // namespace
+
+Result<void> add_eye_file_figures(const std::string& path, Figures& figures) {
+  const auto file = TRY(calib::EyeFile::open(path, calib::EyeFileMode::read));
+  add_eye(file.eye(), figures);
+  TRY(add_sessions(file, figures));
+  const std::vector<calib::StoredEstimate> stored = TRY(file.estimates());
+  std::vector<Figures> estimates;
+  for (const calib::StoredEstimate& each : stored)
+    estimates.push_back(figures_of(each, TRY(file.load_estimate(each.id))));
+  figures.add("estimates", Value::List(estimates.begin(), estimates.end()), "estimates", "{:count}");
+  for (std::size_t i = 0; i < estimates.size(); ++i) add_lines(estimates[i], i, figures);
+  if (stored.empty()) return {};
+  figures.add("row_error", row_error(TRY(file.load_response(stored.back().id))), "newest rows",
+              "known to {:2%|no stated sigma} (median relative error by their own sigma)");
+  return {};
+}
+
+}  // namespace compueye::firmware
