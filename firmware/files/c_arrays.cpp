@@ -37,17 +37,19 @@ std::string array_text(std::string_view type, std::string_view name, const std::
   constexpr std::size_t longest_line = 110;
   // An array of nothing is none in C.
   std::string text = "static const " + std::string(type) + " compueye_response_" + std::string(name) + "[" +
-                     std::to_string(std::max<std::size_t>(numbers.size(), 1)) + "] = {\n  ";
-  std::string line;
-  for (const Number number : numbers) {
-    const std::string next = literal(number) + ", ";
-    if (line.size() + next.size() > longest_line) {
-      text += line.substr(0, line.size() - 1) + "\n  ";
-      line.clear();
+                     std::to_string(std::max<std::size_t>(numbers.size(), 1)) + "] = {\n ";
+  std::size_t length = 0;
+  const auto put = [&](const std::string& number) {
+    length += number.size() + 2;
+    if (length > longest_line) {
+      text += "\n ";
+      length = number.size() + 2;
     }
-    line += next;
-  }
-  return text + line + (numbers.empty() ? "0" : "") + "\n};\n";
+    text += " " + number + ",";
+  };
+  for (const Number number : numbers) put(literal(number));
+  if (numbers.empty()) put("0");
+  return text + "\n};\n";
 }
 
 std::string heading(const recon::Response& response, std::string_view comment, std::size_t entries) {
