@@ -88,19 +88,23 @@ Result<calib::StoredEstimate> newest_of(const calib::EyeFile& file, std::optiona
 double row_sigma(const recon::Response& response, const std::vector<float>& sigma,
                  const std::vector<hal::ChannelStatus>& status) {
   if (sigma.empty()) return 0.0;
-  double squares = 0.0;
-  std::size_t entry = 0, rows = 0;
+  std::vector<double> squares;
+  std::size_t entry = 0;
   for (int m = 0; m < response.rows(); ++m) {
-    const bool good = status[static_cast<std::size_t>(m)] == hal::ChannelStatus::good;
-    rows += good ? 1U : 0U;
+    double sum = 0.0;
     response.for_each_in_row(m, [&](std::int32_t, double) {
       const double each = sigma[entry++];
-      if (good) squares += each * each;
+      sum += each * each;
     });
+    if (status[static_cast<std::size_t>(m)] == hal::ChannelStatus::good && sum > 0.0) squares.push_back(sum);
   }
+  if (squares.empty()) return 0.0;
+  // A few rows that are hardly known must not hide what the others tell.
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::nth_element(squares.begin(), middle, squares.end());
   // Of pictures whose pixels are spread evenly from black to white.
   constexpr double mean_square = 1.0 / 3.0;
-  return rows == 0 ? 0.0 : std::sqrt(mean_square * squares / static_cast<double>(rows));
+  return std::sqrt(mean_square * *middle);
 }
 
 template <class T>

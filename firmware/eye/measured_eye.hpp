@@ -32,7 +32,7 @@ struct MeasuredEye {
   std::vector<hal::ChannelStatus> status;  ///< M, by ommatidium
   MeasuredSensor sensor;                   ///< masks what is not good
   /// Of a sample in white pixels, from errors of its row's entries, each by itself, in front of a picture whose pixels
-  /// are spread evenly from black to white; root mean square over the good rows. 0: not known.
+  /// are spread evenly from black to white; median over the good rows. 0: not known.
   double row_sigma = 0.0;
 
   [[nodiscard]] std::size_t masked() const noexcept;
