@@ -27,6 +27,7 @@ void add_ramp(const SessionPlan& plan, std::vector<Wanted>& all) {
     part.seed = plan.seed ^ ramp_seed;
     part.index = step;
     all.push_back(part);
+    all.push_back(of_stage(Stage::ramp_white, white, plan.ramp_frames));
     part.stage = Stage::ramp_rest;
     all.push_back(part);
   }
@@ -58,6 +59,8 @@ std::string_view name(Stage stage) noexcept {
       return "flat";
     case Stage::ramp:
       return "ramp";
+    case Stage::ramp_white:
+      return "ramp white";
     case Stage::ramp_rest:
       return "ramp rest";
     case Stage::pattern:

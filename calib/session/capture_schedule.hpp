@@ -12,12 +12,24 @@ namespace compueye::calib {
 
 /// The parts of a session, in the order in which they begin. References, darks and held-out patterns come between the
 /// patterns.
-enum class Stage { dark, black, flat, ramp, ramp_rest, pattern, held_out, reference, interleaved_dark, resumed };
+enum class Stage {
+  dark,
+  black,
+  flat,
+  ramp,
+  ramp_white,
+  ramp_rest,
+  pattern,
+  held_out,
+  reference,
+  interleaved_dark,
+  resumed
+};
 
-inline constexpr std::array all_stages{Stage::dark,     Stage::black,     Stage::flat,
-                                       Stage::ramp,     Stage::ramp_rest, Stage::pattern,
-                                       Stage::held_out, Stage::reference, Stage::interleaved_dark,
-                                       Stage::resumed};
+inline constexpr std::array all_stages{
+    Stage::dark,      Stage::black,   Stage::flat,     Stage::ramp,      Stage::ramp_white,
+    Stage::ramp_rest, Stage::pattern, Stage::held_out, Stage::reference, Stage::interleaved_dark,
+    Stage::resumed};
 
 [[nodiscard]] std::string_view name(Stage stage) noexcept;
 

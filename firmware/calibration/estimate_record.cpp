@@ -84,7 +84,8 @@ void add_noise(const calib::SensorNoise& sensor, calib::Estimate& record) {
 
 }  // namespace
 
-hal::Result<std::int64_t> store(const calib::ResponseEstimate& estimate, const calib::SensorNoise& sensor,
+hal::Result<std::int64_t> store(const calib::ResponseEstimate& estimate,
+                                const std::vector<calib::LinearityTable>& linearity, const calib::SensorNoise& sensor,
                                 const EstimateOrigin& origin, calib::EyeFile& file) {
   calib::Estimate record;
   record.sessions = origin.sessions;
@@ -96,6 +97,10 @@ hal::Result<std::int64_t> store(const calib::ResponseEstimate& estimate, const c
   record.shared = shared_of(estimate);
   add_rows(estimate, record);
   add_noise(sensor, record);
+  if (!linearity.empty()) record.linearity_codes = linearity.front().code;
+  for (const calib::LinearityTable& table : linearity) {
+    record.linearity_values.insert(record.linearity_values.end(), table.straight.begin(), table.straight.end());
+  }
   std::vector<float> sigma;
   for (const RowEstimate& row : estimate.rows) {
     if (row.status == hal::ChannelStatus::good) sigma.insert(sigma.end(), row.sigmas.begin(), row.sigmas.end());

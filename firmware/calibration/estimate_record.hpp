@@ -18,9 +18,12 @@ struct EstimateOrigin {
   std::int64_t made_unix_s = 0;
 };
 
-/// An estimate with the noise of its channels, as an eye file keeps it: all rows with their sigmas, those of channels
-/// that are not good empty. Its id in the file. Errors: those of EyeFile::store_estimate().
-[[nodiscard]] hal::Result<std::int64_t> store(const calib::ResponseEstimate& estimate, const calib::SensorNoise& sensor,
-                                              const EstimateOrigin& origin, calib::EyeFile& file);
+/// An estimate with linearity (a table a channel of the same codes, or none) and noise of its channels, as an eye file
+/// keeps it: all rows with their sigmas, those of channels that are not good empty. Its id in the file. Errors: those
+/// of EyeFile::store_estimate().
+[[nodiscard]] hal::Result<std::int64_t> store(const calib::ResponseEstimate& estimate,
+                                              const std::vector<calib::LinearityTable>& linearity,
+                                              const calib::SensorNoise& sensor, const EstimateOrigin& origin,
+                                              calib::EyeFile& file);
 
 }  // namespace compueye::firmware

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "firmware/calibration/plan_settings.hpp"
 #include "firmware/eye/settings/document_rules.hpp"
@@ -38,6 +39,18 @@ std::string text_of(const calib::SessionPlan& plan) {
     for (const auto& row : plan_settings()) {
       if (row.section == section.name) text += fmt::format("{} = {}\n", row.key, quoted(*row.show(plan)));
     }
+  }
+  return text;
+}
+
+std::string plan_reference() {
+  std::string text;
+  for (const Section& section : plan_sections()) {
+    std::vector<const SettingRule*> rules;
+    for (const SettingRule& rule : plan_settings()) {
+      if (rule.section == section.name) rules.push_back(&rule);
+    }
+    text += fmt::format("### [{}]\n{}\n\n{}\n", section.name, section.meaning, reference_table(rules));
   }
   return text;
 }

@@ -16,4 +16,7 @@ namespace compueye::firmware {
 /// Every setting in TOML: the same plan has the same text.
 [[nodiscard]] std::string text_of(const calib::SessionPlan& plan);
 
+/// The tables of docs/calibration.md: every section with its keys.
+[[nodiscard]] std::string plan_reference();
+
 }  // namespace compueye::firmware

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calib/estimate/channel_status.hpp"
+#include "calib/estimate/linearity.hpp"
 #include "calib/session/capture_schedule.hpp"
 #include "hal/try.hpp"
 
@@ -85,7 +86,14 @@ class Sorter {
       case Stage::held_out:
         break;
       case Stage::ramp:
+        append_means(capture, splits_.emplace_back().part);
+        return {};
+      case Stage::ramp_white:
+        if (!splits_.empty()) append_means(capture, splits_.back().whole);
+        return {};
       case Stage::ramp_rest:
+        if (!splits_.empty()) append_means(capture, splits_.back().rest);
+        return {};
       case Stage::resumed:
         return {};
     }
@@ -98,6 +106,8 @@ class Sorter {
     c.held_out.push_back(stage == Stage::held_out ? 1 : 0);
     return {};
   }
+
+  [[nodiscard]] const std::vector<calib::SplitWhite>& splits() const noexcept { return splits_; }
 
  private:
   Result<void> add_frame(std::size_t series, const Capture& capture) {
@@ -115,6 +125,7 @@ class Sorter {
   SessionCaptures& into_;
   int rows_, cols_;
   CaptureTime time_;
+  std::vector<calib::SplitWhite> splits_;
 };
 
 }  // namespace
@@ -127,7 +138,10 @@ Result<SessionCaptures> session_captures(const calib::EyeFile& file, std::int64_
   Sorter sorter(all, file.eye().plane.rows, file.eye().plane.cols, frame_period_s);
   auto reader = TRY(file.captures(session));
   while (const auto capture = TRY(reader.next())) TRY(sorter.add(TRY(stage_of(*capture, file.path())), *capture));
-  all.captures.dark_lsb = means_of(all.series.front().codes, static_cast<std::size_t>(file.eye().geometry.ommatidia()));
+  const auto channels = static_cast<std::size_t>(file.eye().geometry.ommatidia());
+  all.captures.dark_lsb = means_of(all.series[0].codes, channels);
+  all.captures.linearity = calib::linearity_tables(sorter.splits(), means_of(all.series[1].codes, channels),
+                                                   std::ldexp(1.0, all.bits) - 1.0);
   return all;
 }
 

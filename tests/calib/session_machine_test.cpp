@@ -146,9 +146,10 @@ TEST_CASE("references, darks and held-out patterns come as often as the plan say
   CHECK(count(Stage::ramp) == count(Stage::ramp_rest));
   CHECK(schedule[schedule.size() - 2].stage == Stage::reference);
   // A ramp's two parts are the white picture.
-  for (std::size_t k = 1; k < schedule.size(); ++k) {
+  for (std::size_t k = 2; k < schedule.size(); ++k) {
     if (schedule[k].stage != Stage::ramp_rest) continue;
-    const auto a = calib::picture_of(schedule[k - 1], 16, 16).value(),
+    CHECK(schedule[k - 1].stage == Stage::ramp_white);
+    const auto a = calib::picture_of(schedule[k - 2], 16, 16).value(),
                b = calib::picture_of(schedule[k], 16, 16).value();
     for (std::size_t n = 0; n < a.pixels.size(); ++n) CHECK(a.pixels[n] + b.pixels[n] == 1.0F);
   }

@@ -27,6 +27,7 @@ Board built_board() {
   Board board = load_board(test::source_path("boards/sim-8x8-built")).value();
   board.sensor.bits = 12;
   board.sensor.full_scale = 64.0;
+  board.detector.inl_lsb = 10.0;
   return board;
 }
 
@@ -114,7 +115,7 @@ calib::ResponseEstimate calibrated(const Board& board, const CalibrationRequest&
   const calib::CodeNoise noise = code_noise(taken, sensor, 1.0 / board.sensor.lsb(), 0.98).value();
   CHECK(noise.read_noise_lsb == doctest::Approx(1.0).epsilon(0.1));
   auto found = calib::estimate_response(taken.captures, noise, board.eye, board.object).value();
-  CHECK(store(found, sensor, {{id}, "test", "hybrid", "", 30.0, 0}, file).has_value());
+  CHECK(store(found, taken.captures.linearity, sensor, {{id}, "test", "hybrid", "", 30.0, 0}, file).has_value());
   return found;
 }
 
@@ -125,13 +126,14 @@ TEST_CASE("a session measures rows that no model of ours contains, and knows how
   if (test::sanitized) board.object.rows = board.object.cols = 8;
   Board quiet = board;
   quiet.sensor.read_noise_lsb = 0.0;
+  quiet.detector.inl_lsb = 0.0;
   const std::vector<double> truth = true_rows(quiet);
 
   CalibrationRequest request;
   request.plan.warm_up_s = 1.0;
   request.plan.patterns = test::sanitized ? 24 : 128;
   request.plan.dark_frames = request.plan.black_frames = request.plan.flat_frames = 32;
-  request.plan.ramp_steps = 0;
+  request.plan.ramp_steps = 4;
   request.plan.settle_ms = 60.0;
   request.distance_mm = board.object.distance_mm;
   const test::TemporaryFolder folder;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -162,6 +163,17 @@ TEST_CASE("the ranges of a plan file are those that a session takes") {
       CHECK_FALSE(calib::validate(plan).has_value());
     }
   }
+}
+
+TEST_CASE("the reference documents every key of a plan as the loader knows it") {
+  std::ifstream stream(test::source_path("docs/calibration.md"));
+  const std::string reference{std::istreambuf_iterator<char>(stream), {}};
+  INFO("docs/calibration.md should hold:\n" << plan_reference());
+  CHECK(reference.find(plan_reference()) != std::string::npos);
+}
+
+TEST_CASE("the plan that a board comes with is one") {
+  CHECK(load_plan(test::source_path("boards/sim-8x8-built/calibration.toml")).value().patterns == 64);
 }
 
 TEST_CASE("only a grey display that stands still and is as large as the object plane is calibrated with") {

@@ -121,7 +121,7 @@ Result<Estimated> estimate(const Board& board, const CalibrationRequest& request
   origin.plan = text_of(request.plan);
   origin.distance_mm = request.distance_mm;
   origin.made_unix_s = request.now_unix_s;
-  made.id = TRY(store(made.rows, made.sensor, origin, file));
+  made.id = TRY(store(made.rows, taken.captures.linearity, made.sensor, origin, file));
   return made;
 }
 

@@ -86,7 +86,10 @@ TEST_CASE("every command of the README does what it says, in the order in which 
     // Without what was kept there by others.
     if (!std::filesystem::exists(board.path() / "board.toml")) continue;
     std::filesystem::create_directory(folder / "boards" / board.path().filename());
-    std::filesystem::copy_file(board.path() / "board.toml", folder / "boards" / board.path().filename() / "board.toml");
+    for (const auto& file : std::filesystem::directory_iterator(board.path())) {
+      if (file.path().extension() != ".toml") continue;
+      std::filesystem::copy_file(file.path(), folder / "boards" / board.path().filename() / file.path().filename());
+    }
   }
   int run = 0;
   for (const Command& command : commands_of("README.md")) {
