@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -68,6 +69,19 @@ Result<calib::EyeFile> open_eye(const CalibrateRequest& o, const Board& board) {
   return hal::fail(ErrorCode::mismatch, o.eye,
                    "is of eye '" + file.eye().serial + "' or of another geometry than board " + board.name +
                        ": name another file, or the board that it is of");
+}
+
+/// The last session, where it has ended and nothing was estimated from it: what a stop while estimating leaves.
+Result<std::optional<calib::StoredSession>> unestimated(const calib::EyeFile& file) {
+  std::vector<calib::StoredSession> sessions = TRY(file.sessions());
+  if (sessions.empty() || !sessions.back().end) return std::optional<calib::StoredSession>();
+  for (const calib::StoredEstimate& each : TRY(file.estimates())) {
+    const calib::Estimate estimate = TRY(file.load_estimate(each.id));
+    if (std::ranges::find(estimate.sessions, sessions.back().id) != estimate.sessions.end()) {
+      return std::optional<calib::StoredSession>();
+    }
+  }
+  return std::optional(std::move(sessions.back()));
 }
 
 /// Tells stages and what was rejected, beside the share that is done.
@@ -159,7 +173,7 @@ double median_chi2(const calib::ResponseEstimate& rows) {
 }
 
 Figures report_of(const CalibrateRequest& o, const Board& board, const calib::SessionProgress& p, std::int64_t id,
-                  const Estimated& made) {
+                  std::int64_t captures, const Estimated& made) {
   std::uint64_t rejected = 0;
   for (const std::uint64_t count : p.rejected) rejected += count;
   const auto good = std::count_if(made.rows.rows.begin(), made.rows.rows.end(),
@@ -168,7 +182,7 @@ Figures report_of(const CalibrateRequest& o, const Board& board, const calib::Se
             {"board", board.name},
             {"session", id},
             {"estimate", made.id},
-            {"captures", p.of},
+            {"captures", captures},
             {"rejected", rejected},
             {"signal_lsb", p.signal_lsb},
             {"settle_ms", p.settle_ms},
@@ -206,13 +220,22 @@ Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   request.now_unix_s =
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
   Teller teller(session);
-  const std::int64_t id = TRY(run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file,
-                                              [&](const calib::SessionProgress& p) { return teller.tell(p); }));
+  std::optional<std::int64_t> id;
+  std::optional<calib::StoredSession> left;
+  if (o.resume) left = TRY(unestimated(file));
+  if (left) {
+    id = left->id;
+    request.plan = TRY(parse_plan(left->begun.plan, o.eye));
+    request.distance_mm = left->begun.distance_mm;
+  } else {
+    id = TRY(run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file,
+                             [&](const calib::SessionProgress& p) { return teller.tell(p); }));
+  }
   session.end_progress();
-  const Estimated made = TRY(estimate(board, request, id, file, session));
+  const Estimated made = TRY(estimate(board, request, *id, file, session));
+  const Figures report = report_of(o, board, teller.last(), *id, TRY(file.capture_count(*id)), made);
   TRY(file.close());
-  const calib::SessionProgress& p = teller.last();
-  return session.print(report_of(o, board, p, id, made));
+  return session.print(report);
 }
 
 Action declare(OptionList& options) {
@@ -222,7 +245,7 @@ Action declare(OptionList& options) {
   options.add("--plan", o->plan, ".toml file of what is captured (default: see docs/calibration.md)");
   options.add("--scene", o->scene, ".toml file of what a simulated display is like");
   options.add("--seed", o->seed, "of a simulated eye's noise");
-  options.flag("--resume", o->resume, "go on with a session that was cut off");
+  options.flag("--resume", o->resume, "go on with a session that was cut off, or with its estimate");
   options.json("print one object and nothing else on stdout");
   return action_of(o, calibrate);
 }

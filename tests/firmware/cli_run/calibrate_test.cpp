@@ -1,0 +1,65 @@
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "calib/eye_file/eye_file.hpp"
+#include "firmware/calibration/calibration_run.hpp"
+#include "firmware/calibration/plan_file.hpp"
+#include "firmware/calibration/simulated_bench.hpp"
+#include "tests/firmware/cli_run/copied_board.hpp"
+
+using namespace compueye;
+using namespace compueye::test;
+
+namespace {
+
+constexpr const char* short_plan =
+    "[light]\nwarm_up_s = 0.5\nsettle_ms = 60\n[levels]\ndark_frames = 4\nblack_frames = 4\nflat_frames = 4\n"
+    "ramp_steps = 0\n[patterns]\ncount = 40\n";
+
+/// A session in a file that nothing was estimated from, as a stop while estimating leaves it.
+void capture_only(const CopiedBoard& board, const std::string& eye) {
+  const firmware::Board loaded = firmware::load_board(board.path()).value();
+  const auto bench = firmware::SimulatedBench::create(loaded, firmware::plain_display(loaded), 0).value();
+  auto file = calib::EyeFile::create(eye, {loaded.source.serial, loaded.eye, loaded.object}).value();
+  firmware::CalibrationRequest request;
+  request.plan = firmware::parse_plan(short_plan, "plan").value();
+  request.distance_mm = 30.0;
+  request.program = "test";
+  REQUIRE(firmware::run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file,
+                                    [](const calib::SessionProgress&) { return true; })
+              .has_value());
+  REQUIRE(file.close().has_value());
+}
+
+}  // namespace
+
+TEST_CASE("what a session measured is estimated by --resume where a stop came before, and an eye runs with it") {
+  const CopiedBoard board;
+  const std::string eye = board.outside("a.eye").string(), path = board.path().string();
+  capture_only(board, eye);
+  const Ended made = test::compueye({"calibrate", "--board", path, "--eye", eye, "--resume", "--json"});
+  REQUIRE_MESSAGE(made.exit_code == 0, made.err);
+  const auto json = nlohmann::json::parse(made.out);
+  CHECK(json["session"] == 1);
+  CHECK(json["estimate"] == 1);
+  CHECK(json["captures"] == calib::capture_schedule(firmware::parse_plan(short_plan, "plan").value(), 16, 16).size());
+  CHECK(json["good_channels"].get<int>() >= 60);
+  CHECK(json["row_error"].get<double>() < 0.05);
+  const Ended run = test::compueye({"run", "--board", path, "--eye", eye, "--frames", "5", "--lossless", "--json"});
+  REQUIRE_MESSAGE(run.exit_code == 0, run.err);
+  CHECK(nlohmann::json::parse(run.out)["quality"]["nmse"].get<double>() < 0.05);
+  const Ended again = test::compueye({"calibrate", "--board", path, "--eye", eye, "--resume"});
+  CHECK(again.exit_code == 2);
+  CHECK(contains(again.err, "--resume"));
+}
+
+TEST_CASE("a board whose eye is not simulated is told that its sessions are to come, and leaves no file") {
+  const CopiedBoard board;
+  board.change("kind = \"sim\"", "kind = \"usb\"");
+  const auto eye = board.outside("a.eye");
+  const Ended ended = test::compueye({"calibrate", "--board", board.path().string(), "--eye", eye.string()});
+  CHECK(ended.exit_code == 1);
+  CHECK(contains(ended.err, "'usb'"));
+  CHECK_FALSE(std::filesystem::exists(eye));
+}
