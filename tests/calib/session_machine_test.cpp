@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/patterns/pattern_family.hpp"
@@ -34,6 +35,8 @@ struct Bench {
   std::vector<std::uint8_t> valid = std::vector<std::uint8_t>(channels, 1);
   std::vector<calib::Capture> stored;
   std::function<void(hal::SampleBlock&)> spoil;  // what happens to a frame on its way
+  std::int64_t hold_up_from = -1;  // capture from which on the reader is held up at every change of light; -1: never
+  std::vector<std::pair<hal::SampleBlock, std::vector<std::int32_t>>> held_up;
 
   Bench() {
     plan.warm_up_s = 0.1;
@@ -80,11 +83,29 @@ struct Bench {
     return block;
   }
 
+  /// Frames of the old light that are read long after the new one has settled: the reader was held up.
+  hal::Result<void> read_late(calib::SessionMachine& machine) {
+    for (const auto& [block, seen] : held_up) {
+      hal::SampleBlock late = block;
+      late.codes = seen;
+      if (auto told = machine.saw(late, now_ns + way_ns); !told) return told;
+    }
+    held_up.clear();
+    return {};
+  }
+
   hal::Result<void> drive(calib::SessionMachine& machine, std::int64_t most_commits = 1'000'000) {
     while (machine.need() != Need::nothing && most_commits > 0) {
       if (machine.need() == Need::light) {
+        const bool late = hold_up_from >= 0 && machine.progress(0).taken >= hold_up_from;
+        for (int k = 0; k < 4 && late; ++k) {
+          const hal::SampleBlock block = read();
+          held_up.emplace_back(block, codes);
+        }
         show(machine.wanted());
         machine.lit(now_ns, now_ns + ms);  // which the light is wrong about
+        if (late) now_ns += 500 * ms;
+        if (auto told = read_late(machine); !told) return told;
       } else if (machine.need() == Need::frame) {
         const auto block = read();
         const auto seen = machine.saw(block, now_ns + way_ns);
@@ -230,6 +251,37 @@ TEST_CASE("what is lost, overrun, saturated or of other settings is taken again,
     }
     CHECK(repeats == machine.progress(0).rejected[static_cast<std::size_t>(each.reason)]);
   }
+}
+
+TEST_CASE("frames of the light before are told by when they were exposed, however late they are read") {
+  Bench whole, late;
+  late.hold_up_from = 8;
+  auto undisturbed = whole.machine(), machine = late.machine();
+  REQUIRE(whole.drive(undisturbed).has_value());
+  REQUIRE(late.drive(machine).has_value());
+  REQUIRE(late.stored.size() == whole.stored.size());
+  for (std::size_t k = 0; k < whole.stored.size(); ++k) CHECK(late.stored[k].codes == whole.stored[k].codes);
+}
+
+TEST_CASE("a channel that means nothing in one frame of a capture means nothing in the capture") {
+  Bench bench;
+  bench.plan.frames = 3;
+  auto machine = bench.machine();
+  int frames = 0;
+  std::vector<std::uint8_t> valid(channels, 1);
+  bench.spoil = [&](hal::SampleBlock& block) {
+    const bool within = machine.progress(0).taken >= 20;
+    valid[5] = within && ++frames % 11 == 0 ? 0 : 1;
+    block.valid = valid;
+  };
+  REQUIRE(bench.drive(machine).has_value());
+  int without = 0;
+  for (const calib::Capture& each : bench.stored) {
+    for (std::size_t c = 0; c < each.valid.size(); ++c) CHECK((each.valid[c] == 1 || c == 5));
+    without += each.valid[5] == 0 ? 1 : 0;
+  }
+  CHECK(without > 3);
+  CHECK(without < static_cast<int>(bench.stored.size()) / 2);
 }
 
 TEST_CASE("a session gives up on what never comes whole, and says why") {

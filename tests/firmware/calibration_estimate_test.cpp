@@ -151,6 +151,13 @@ TEST_CASE("a session measures rows that no model of ours contains, and knows how
     CHECK(judgement.within_two >= 0.9);
   }
 
+  const calib::Estimate record = file.load_estimate(1).value();
+  REQUIRE(record.dark_level_lsb.size() == found.rows.size());
+  for (const double dark : record.dark_level_lsb) {
+    CHECK(dark == doctest::Approx(board.sensor.dark_level_lsb).epsilon(0.3));  // its spread and the bow are in it
+  }
+  CHECK(record.linearity_values.size() == record.linearity_codes.size() * found.rows.size());
+  CHECK(record.status.size() == found.rows.size());
   const auto stored = file.load_response(1).value();
   const recon::Response response = found.response(board.object).value();
   CHECK(std::ranges::equal(stored.response.row_start(), response.row_start()));

@@ -107,6 +107,20 @@ TEST_CASE("a picture comes exponentially with 4 ms, from whatever was there") {
   }
 }
 
+TEST_CASE("light that is on its way goes on from where it is") {
+  Bench bench;
+  const hal::Image white(8, 8, 1.0F);
+  REQUIRE(bench.display.show(white.pixels).has_value());
+  const auto full = bench.levels(100 * ms);
+  REQUIRE(bench.display.off().has_value());
+  const auto away = bench.levels(6 * ms);  // exp(-1.5) and less
+  CHECK(away[5] <= 0.25 * full[5]);
+  CHECK(away[5] > 0.05 * full[5]);
+  REQUIRE(bench.display.off().has_value());  // again: it is no darker and no brighter for that
+  const auto block = bench.eye->read(bench.clock.now_ns() + 10 * ms).value();
+  CHECK(block.codes[5] - bench.settings.board.sensor.dark_level_lsb <= away[5]);
+}
+
 TEST_CASE("what a display does to pictures is done to those that it is given: gamma, black level, drift") {
   auto settings = before_a_display();
   settings.scenes[0].display.gamma = 2.0;
