@@ -14,6 +14,7 @@
 #include <string_view>
 #include <system_error>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "firmware/files/atomic_file.hpp"
@@ -209,9 +210,21 @@ struct Reader {
     } else if (key == "psnr_db" && from.is_null()) {
       // Infinity, the PSNR of a perfect picture, is null in JSON.
       if constexpr (std::is_same_v<Member, double>) value = std::numeric_limits<double>::infinity();
+    } else if constexpr (std::is_integral_v<Member> && !std::is_same_v<Member, bool>) {
+      value = whole_from<Member>(from, key);
     } else {
       value = from.get<Member>();
     }
+  }
+
+  /// The library would convert any number, also one that no integer holds.
+  template <class Member>
+  static Member whole_from(const Json& from, const std::string& key) {
+    const bool whole = from.is_number_integer();
+    if (from.is_number_unsigned() && std::in_range<Member>(from.get<std::uint64_t>())) return from.get<Member>();
+    if (whole && !from.is_number_unsigned() && std::in_range<Member>(from.get<std::int64_t>()))
+      return from.get<Member>();
+    throw std::out_of_range(fmt::format("{} is {}", key, from.dump()));
   }
 
   static recon::OperatorKind operator_from(const Json& from) {

@@ -70,12 +70,12 @@ std::vector<std::string> scene_files() {
   return files;
 }
 
-/// Every third from number `first` on.
-std::vector<std::string> scene_files_from(std::size_t first) {
+/// Every third (or `step`-th) from number `first` on.
+std::vector<std::string> scene_files_from(std::size_t first, std::size_t step = 3) {
   const auto all = scene_files();
   if (whole_grid) return all;
   std::vector<std::string> some;
-  for (std::size_t k = first % 3; k < all.size(); k += 3) some.push_back(all[k]);
+  for (std::size_t k = first; k < all.size(); k += step) some.push_back(all[k]);
   return some;
 }
 
@@ -88,7 +88,7 @@ std::vector<double> levels_of(sim::SimulatedEye& eye, std::uint64_t frame) {
 
 struct Difference {
   double rms_lsb = 0.0;  ///< over channels and frames
-  double nmse = 0.0;     ///< of reconstructions, largest frame
+  double nmse = 0.0;     ///< of reconstructions, mean over frames, as bounds are rms over them
 };
 
 class Grid {
@@ -122,7 +122,7 @@ class Grid {
       const auto f = static_cast<std::uint64_t>((static_cast<double>(k) + 0.37) / frames * looked_at);
       const auto of_a = levels_of(a, f), of_b = levels_of(b, f);
       for (std::size_t m = 0; m < of_a.size(); ++m) squares += std::pow(of_a[m] - of_b[m], 2);
-      found.nmse = std::max(found.nmse, change(of_a, of_b));
+      found.nmse += change(of_a, of_b) / static_cast<double>(frames);
     }
     found.rms_lsb = std::sqrt(squares / static_cast<double>(frames) / static_cast<double>(board_.eye.ommatidia()));
     return found;
@@ -162,11 +162,11 @@ double drawn_share(const sim::Effect& effect, const Board& board) {
 }
 
 /// Number of the scenes for which something is left out.
-int check_plans(const Board& board, std::size_t first) {
+int check_plans(const Board& board, const std::vector<std::string>& files) {
   Grid grid(board);
   int left_out = 0;
   CAPTURE(board.name);
-  for (const std::string& file : scene_files_from(first)) {
+  for (const std::string& file : files) {
     CAPTURE(file);
     const auto scene = choose_scene(board, {file, 0, std::nullopt});
     REQUIRE_MESSAGE(scene.has_value(), (scene ? std::string() : scene.error().text()));
@@ -245,19 +245,19 @@ void check_uncalled(const Board& board, std::size_t first) {
 
 TEST_CASE("plans keep their promise before an eye as drawn") {
   CHECK(scene_files().size() >= 12);
-  CHECK(check_plans(shipped("sim-8x8"), 0) > 0);
+  CHECK(check_plans(shipped("sim-8x8"), scene_files_from(0)) > 0);
 }
 
 TEST_CASE("plans keep their promise before an eye as built") {
-  CHECK(check_plans(shipped("sim-8x8-built"), 1) > 0);
+  CHECK(check_plans(shipped("sim-8x8-built"), scene_files_from(4, 6)) > 0);
 }
 
 TEST_CASE("plans keep their promise before an honest detector") {
-  CHECK(check_plans(shipped("sim-8x8-detector"), 2) > 0);
+  CHECK(check_plans(shipped("sim-8x8-detector"), scene_files_from(2)) > 0);
 }
 
 TEST_CASE("plans keep their promise before wide cones") {
-  CHECK(check_plans(wide(), 0) > 0);
+  CHECK(check_plans(wide(), scene_files_from(0)) > 0);
 }
 
 // No bound is less than the truth, nor more than ten times where an effect dominates.

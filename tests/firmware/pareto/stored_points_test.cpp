@@ -104,6 +104,17 @@ TEST_CASE("a damaged file gives an error or the same points, never a crash") {
     folder.file("accuracy-and-time.json", text);
     CHECK_FALSE(load_points(folder.path(), key_of(sweep)).has_value());
   }
+  // Numbers that no whole one holds.
+  const std::string key = "\"iterations\": ";
+  const std::size_t begin = bytes.find(key) + key.size(), end = bytes.find_first_of(",\n", begin);
+  REQUIRE(begin > key.size());
+  for (const char* number : {"9.8e19", "1e300", "2.5", "99999999999999999999", "3000000000", "-3000000000", "true"}) {
+    folder.file("accuracy-and-time.json", bytes.substr(0, begin) + number + bytes.substr(end));
+    const auto loaded = load_points(folder.path(), key_of(sweep));
+    CAPTURE(number);
+    REQUIRE_FALSE(loaded.has_value());
+    CHECK(loaded.error().code == hal::ErrorCode::bad_format);
+  }
   for (std::size_t number = 0; number < 400; ++number) {
     folder.file("accuracy-and-time.json", test::damaged(bytes, number));
     const auto loaded = load_points(folder.path(), key_of(sweep));
