@@ -207,7 +207,8 @@ std::size_t check_bounds(const Board& board, const Groups& groups, const std::ve
     for (const auto& each : plan.effects) {
       const std::string effect(each.effect->name);
       if (each.called_for_by.empty()) continue;
-      if (!whole_grid && (!groups.contains(each.effect->group) || !looked_at.insert(effect).second)) continue;
+      if (!whole_grid && (!groups.contains(each.effect->group) || looked_at.contains(effect))) continue;
+      looked_at.insert(effect);
       CAPTURE(effect);
       CAPTURE(each.called_for_by);
       if (!everything) everything = grid.eye(scene, sim::PlanMode::everything);
