@@ -126,6 +126,7 @@ std::optional<double> dark_slope(const std::vector<Statistics>& darks, std::size
 
 ChannelNoise channel_noise(const Transfer& t, std::optional<double> dark_lsb_per_s) {
   ChannelNoise noise;
+  noise.dark_noise_lsb = std::sqrt(t.dark_variance);
   const std::optional<double> saturation = saturation_lsb(t);
   const double reach = saturation.value_or(t.full_lsb);
   noise.linearity_error = linearity_error(t, reach);
@@ -280,9 +281,9 @@ Result<SensorNoise> sensor_noise(std::span<const LightSeries> series, int channe
     }
     noise.channels.push_back(channel_noise(t, dark_slope(darks, m)));
   }
-  for (const auto what :
-       {&ChannelNoise::gain_lsb_per_e, &ChannelNoise::read_noise_e, &ChannelNoise::dark_current_e_per_s,
-        &ChannelNoise::saturation_e, &ChannelNoise::linearity_error, &ChannelNoise::dynamic_range}) {
+  for (const auto what : {&ChannelNoise::gain_lsb_per_e, &ChannelNoise::dark_noise_lsb, &ChannelNoise::read_noise_e,
+                          &ChannelNoise::dark_current_e_per_s, &ChannelNoise::saturation_e,
+                          &ChannelNoise::linearity_error, &ChannelNoise::dynamic_range}) {
     noise.median.*what = median_of(noise.channels, what);
   }
   add_spread(dark, flats, full, noise);

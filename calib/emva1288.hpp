@@ -19,6 +19,7 @@ struct LightSeries {
 /// Of one channel. Nothing where the frames cannot tell.
 struct ChannelNoise {
   std::optional<double> gain_lsb_per_e;  ///< K, the system gain
+  std::optional<double> dark_noise_lsb;  ///< temporal noise in the dark at the shortest exposure, rounding included
   std::optional<double> read_noise_e;    ///< temporal noise in the dark at the shortest exposure
   std::optional<double> dark_current_e_per_s;
   std::optional<double> saturation_e;     ///< where the temporal variance is largest, as near as the series are close

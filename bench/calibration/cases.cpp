@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "calib/median.hpp"
 #include "hal/try.hpp"
 #include "tests/calib/estimate/reconstruction.hpp"
 #include "tests/calib/estimate/study_patterns.hpp"

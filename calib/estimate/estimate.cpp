@@ -12,6 +12,7 @@
 
 #include "calib/estimate/least_squares_rows.hpp"
 #include "calib/estimate/row_estimator.hpp"
+#include "calib/median.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::calib {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "calib/estimate/captures.hpp"
-#include "calib/estimate/channel_status.hpp"
 #include "calib/estimate/field_strengths.hpp"
 #include "calib/estimate/row_parameters.hpp"
+#include "calib/estimate/status_limits.hpp"
 #include "calib/nominal.hpp"
 #include "recon/problem/response.hpp"
 

@@ -1,4 +1,5 @@
 #include "calib/estimate/light_samples.hpp"
+#include "calib/median.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/estimate/captures.hpp"
-#include "calib/estimate/channel_status.hpp"
+#include "calib/estimate/status_limits.hpp"
 
 namespace compueye::calib {
 

@@ -1,4 +1,5 @@
 #include "calib/estimate/shared_fit.hpp"
+#include "calib/median.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

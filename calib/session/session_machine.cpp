@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "calib/median.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::calib {
@@ -36,13 +37,6 @@ double mean_code(const hal::SampleBlock& block) {
   return count > 0 ? sum / count : 0.0;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Of the channels that are valid in both.
 std::vector<double> difference(const Capture& light, const Capture& dark) {
   std::vector<double> all;
@@ -60,10 +54,6 @@ std::string rounded(double value) {
 
 std::int32_t largest_code(int bits) {
   return (std::int32_t{1} << bits) - 1;
-}
-
-std::int32_t saturated_code(const SessionPlan& plan, int bits) {
-  return static_cast<std::int32_t>(std::ceil(plan.saturation_share * largest_code(bits)));
 }
 
 }  // namespace
@@ -172,7 +162,7 @@ Result<void> SessionMachine::check_level() const {
                     " channels under white: dim the display or shorten the integration, or allow more with "
                     "saturated_channels");
   }
-  const double level = median_of(signal());
+  const double level = median(signal());
   if (level >= plan_.least_signal_lsb) return {};
   return fail(ErrorCode::out_of_range, "light",
               "gives the median channel " + rounded(level) + " LSB of " + rounded(full) +
@@ -228,7 +218,7 @@ Result<void> SessionMachine::saw_capture(const hal::SampleBlock& block, std::int
       return {};
     case Phase::level_white:
       white_ = builder_.capture();
-      signal_lsb_ = median_of(signal());
+      signal_lsb_ = median(signal());
       TRY(check_level());
       if (resumed_.captures > 0) {
         begin(Phase::resume);

@@ -1,5 +1,6 @@
 #include "calib/session/session_plan.hpp"
 
+#include <cmath>
 #include <string>
 
 #include "calib/patterns/pattern_family.hpp"
@@ -14,6 +15,10 @@ struct Bounds {
 };
 
 }  // namespace
+
+std::int32_t saturated_code(const SessionPlan& plan, int bits) noexcept {
+  return static_cast<std::int32_t>(std::ceil(plan.saturation_share * (std::ldexp(1.0, bits) - 1.0)));
+}
 
 hal::Result<void> validate(const SessionPlan& p) {
   constexpr double any_count = 1e6;

@@ -32,6 +32,9 @@ struct SessionPlan {
   double reference_change = 0.05;   ///< share of its light that a reference may have changed by at a resume, 0 .. 1
 };
 
+/// The least code that counts as saturated.
+[[nodiscard]] std::int32_t saturated_code(const SessionPlan& plan, int bits) noexcept;
+
 /// Errors: out_of_range names the setting and its range; not_found: the family, with the nearest.
 [[nodiscard]] hal::Result<void> validate(const SessionPlan& plan);
 

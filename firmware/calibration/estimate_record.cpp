@@ -25,8 +25,9 @@ struct NoiseFigure {
   const char* name;
   std::optional<double> ChannelNoise::*member;
 };
-constexpr std::array<NoiseFigure, 6> noise_figures{{
+constexpr std::array<NoiseFigure, 7> noise_figures{{
     {"gain_lsb_per_e", &ChannelNoise::gain_lsb_per_e},
+    {"dark_noise_lsb", &ChannelNoise::dark_noise_lsb},
     {"read_noise_e", &ChannelNoise::read_noise_e},
     {"dark_current_e_per_s", &ChannelNoise::dark_current_e_per_s},
     {"saturation_e", &ChannelNoise::saturation_e},

@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "calib/estimate/channel_status.hpp"
 #include "calib/estimate/linearity.hpp"
 #include "calib/session/capture_schedule.hpp"
 #include "hal/try.hpp"
@@ -130,45 +129,28 @@ class Sorter {
 
 }  // namespace
 
-Result<SessionCaptures> session_captures(const calib::EyeFile& file, std::int64_t session, double frame_period_s) {
+Result<SessionCaptures> session_captures(const calib::EyeFile& file, const calib::StoredSession& session,
+                                         double exposure_s) {
   SessionCaptures all;
-  for (const calib::StoredSession& each : TRY(file.sessions())) {
-    if (each.id == session) all.bits = each.begun.bits;
-  }
-  Sorter sorter(all, file.eye().plane.rows, file.eye().plane.cols, frame_period_s);
-  auto reader = TRY(file.captures(session));
+  Sorter sorter(all, file.eye().plane.rows, file.eye().plane.cols, exposure_s);
+  auto reader = TRY(file.captures(session.id));
   while (const auto capture = TRY(reader.next())) TRY(sorter.add(TRY(stage_of(*capture, file.path())), *capture));
   const auto channels = static_cast<std::size_t>(file.eye().geometry.ommatidia());
   all.captures.dark_lsb = means_of(all.series[0].codes, channels);
   all.captures.linearity = calib::linearity_tables(sorter.splits(), means_of(all.series[1].codes, channels),
-                                                   std::ldexp(1.0, all.bits) - 1.0);
+                                                   std::ldexp(1.0, session.begun.bits) - 1.0);
   return all;
 }
 
-Result<calib::CodeNoise> code_noise(const SessionCaptures& session, const calib::SensorNoise& sensor, double unit_lsb,
-                                    double saturation_share) {
+calib::CodeNoise code_noise(const calib::SensorNoise& sensor, double unit_lsb, double saturated_lsb) {
   calib::CodeNoise noise;
   noise.unit_lsb = unit_lsb;
-  noise.saturated_lsb = saturation_share * (std::ldexp(1.0, session.bits) - 1.0);
-  const auto& k = sensor.median.gain_lsb_per_e;
-  if (k) noise.electrons_per_lsb = 1.0 / *k;
-  // In the dark every variance is the converter's, whether or not photons can be told.
-  const std::vector<std::int32_t>& dark = session.series.front().codes;
-  const std::size_t channels = session.captures.dark_lsb.size();
-  std::vector<double> deviations;
-  const std::size_t frames = channels > 0 ? dark.size() / channels : 0;
-  for (std::size_t c = 0; c < channels && frames > 1; ++c) {
-    double sum = 0.0, squares = 0.0;
-    for (std::size_t f = 0; f < frames; ++f) sum += dark[f * channels + c];
-    for (std::size_t f = 0; f < frames; ++f) {
-      squares += std::pow(dark[f * channels + c] - sum / static_cast<double>(frames), 2);
-    }
-    deviations.push_back(std::sqrt(squares / static_cast<double>(frames - 1)));
-  }
-  // Rounding is counted apart, and makes a hundredth of an LSB of no noise at all.
+  noise.saturated_lsb = saturated_lsb;
+  if (sensor.median.gain_lsb_per_e) noise.electrons_per_lsb = 1.0 / *sensor.median.gain_lsb_per_e;
+  // The estimator adds rounding itself; a hundredth of an LSB is no noise at all.
   constexpr double rounding = 1.0 / 12.0, least = 1e-2;
-  const double median = calib::median(std::move(deviations));
-  noise.read_noise_lsb = std::sqrt(std::max(median * median - rounding, least * least));
+  const double dark = sensor.median.dark_noise_lsb.value_or(0.0);
+  noise.read_noise_lsb = std::sqrt(std::max(dark * dark - rounding, least * least));
   return noise;
 }
 

@@ -15,18 +15,16 @@ namespace compueye::firmware {
 struct SessionCaptures {
   calib::Captures captures;
   std::vector<calib::LightSeries> series;  ///< frame by frame: dark, black and white all over
-  int bits = 0;
 };
 
 /// Of a session that has ended. Patterns are drawn anew from what each capture says of itself. Times are the device's,
 /// in seconds; where its clock began anew they go on an hour later, so that nothing is interpolated across. Errors:
 /// those of the file and of picture_of(); bad_format (a stage that is none).
-[[nodiscard]] hal::Result<SessionCaptures> session_captures(const calib::EyeFile& file, std::int64_t session,
-                                                            double frame_period_s);
+[[nodiscard]] hal::Result<SessionCaptures> session_captures(const calib::EyeFile& file,
+                                                            const calib::StoredSession& session, double exposure_s);
 
 /// Noise as the session itself shows it, where it can tell: read noise by the median channel in the dark, electrons by
 /// the photon transfer. `unit_lsb`: LSB that a fully seen white pixel gives as drawn.
-[[nodiscard]] hal::Result<calib::CodeNoise> code_noise(const SessionCaptures& session, const calib::SensorNoise& sensor,
-                                                       double unit_lsb, double saturation_share);
+[[nodiscard]] calib::CodeNoise code_noise(const calib::SensorNoise& sensor, double unit_lsb, double saturated_lsb);
 
 }  // namespace compueye::firmware

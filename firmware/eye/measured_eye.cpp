@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "calib/eye_file/eye_file.hpp"
+#include "calib/median.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -98,13 +99,10 @@ double row_sigma(const recon::Response& response, const std::vector<float>& sigm
     });
     if (status[static_cast<std::size_t>(m)] == hal::ChannelStatus::good && sum > 0.0) squares.push_back(sum);
   }
-  if (squares.empty()) return 0.0;
   // A few rows that are hardly known must not hide what the others tell.
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
   // Of pictures whose pixels are spread evenly from black to white.
   constexpr double mean_square = 1.0 / 3.0;
-  return std::sqrt(mean_square * *middle);
+  return std::sqrt(mean_square * calib::median(std::move(squares)));
 }
 
 template <class T>

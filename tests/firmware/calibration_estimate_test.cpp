@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "calib/estimate/channel_status.hpp"
+#include "calib/estimate/status_limits.hpp"
+#include "calib/median.hpp"
 #include "firmware/calibration/calibration_run.hpp"
-#include "firmware/calibration/estimate_record.hpp"
-#include "firmware/calibration/session_captures.hpp"
+#include "firmware/calibration/session_estimate.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/sanitized.hpp"
@@ -110,13 +110,14 @@ calib::ResponseEstimate calibrated(const Board& board, const CalibrationRequest&
       run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file, [](const calib::SessionProgress&) {
         return true;
       }).value();
-  const SessionCaptures taken = session_captures(file, id, 1.0 / board.source.frame_rate_hz).value();
-  const calib::SensorNoise sensor = calib::sensor_noise(taken.series, board.eye.ommatidia(), taken.bits).value();
-  const calib::CodeNoise noise = code_noise(taken, sensor, 1.0 / board.sensor.lsb(), 0.98).value();
-  CHECK(noise.read_noise_lsb == doctest::Approx(1.0).epsilon(0.1));
-  auto found = calib::estimate_response(taken.captures, noise, board.eye, board.object).value();
-  CHECK(store(found, taken.captures.linearity, sensor, {{id}, "test", "hybrid", "", 30.0, 0}, file).has_value());
-  return found;
+  const calib::StoredSession session = file.sessions().value().front();
+  CHECK(session.id == id);
+  SessionEstimate made =
+      estimate_session(file, session, {1.0 / board.source.frame_rate_hz, 1.0 / board.sensor.lsb(), "test", 0, 1})
+          .value();
+  CHECK(made.id == 1);
+  CHECK(made.sensor.median.dark_noise_lsb.value() == doctest::Approx(1.04).epsilon(0.1));
+  return std::move(made.rows);
 }
 
 }  // namespace

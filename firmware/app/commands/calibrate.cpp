@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,22 +11,25 @@
 #include "calib/emva1288.hpp"
 #include "calib/estimate/estimate.hpp"
 #include "calib/eye_file/eye_file.hpp"
+#include "calib/median.hpp"
 #include "firmware/app/command.hpp"
 #include "firmware/calibration/calibration_run.hpp"
-#include "firmware/calibration/estimate_record.hpp"
 #include "firmware/calibration/plan_file.hpp"
-#include "firmware/calibration/session_captures.hpp"
+#include "firmware/calibration/row_error.hpp"
+#include "firmware/calibration/session_estimate.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/settings/setting.hpp"
+#include "firmware/eye/simulated_board.hpp"
+#include "firmware/eye/writable_eye_file.hpp"
+#include "firmware/text/date.hpp"
 #include "hal/channel_status.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
 namespace {
 
-namespace fs = std::filesystem;
 using hal::ErrorCode;
 using hal::Result;
 
@@ -41,6 +41,7 @@ struct CalibrateRequest {
   std::string scene;  ///< what a simulated display is like; empty: plain
   std::uint64_t seed = 0;
   bool resume = false;
+  Overrides overrides;  ///< distance
 };
 
 /// What must not change while a session is under way.
@@ -53,22 +54,6 @@ std::string configuration_of(const Board& board) {
     }
   }
   return text;
-}
-
-Result<calib::EyeFile> open_eye(const CalibrateRequest& o, const Board& board) {
-  std::error_code ignored;
-  if (!fs::exists(o.eye, ignored)) {
-    if (o.resume) return hal::fail(ErrorCode::not_found, o.eye, "does not exist: there is no session to go on with");
-    return calib::EyeFile::create(o.eye, {board.source.serial, board.eye, board.object});
-  }
-  calib::EyeFile file = TRY(calib::EyeFile::open(o.eye, calib::EyeFileMode::write));
-  if (file.eye().serial == board.source.serial && file.eye().geometry == board.eye &&
-      file.eye().plane == board.object) {
-    return file;
-  }
-  return hal::fail(ErrorCode::mismatch, o.eye,
-                   "is of eye '" + file.eye().serial + "' or of another geometry than board " + board.name +
-                       ": name another file, or the board that it is of");
 }
 
 /// The last session, where it has ended and nothing was estimated from it: what a stop while estimating leaves.
@@ -109,36 +94,6 @@ class Teller {
   bool signal_told_ = false;
 };
 
-struct Estimated {
-  std::int64_t id = 0;
-  calib::ResponseEstimate rows;
-  calib::SensorNoise sensor;
-};
-
-/// From the session's captures to rows in the file.
-Result<Estimated> estimate(const Board& board, const CalibrationRequest& request, std::int64_t id, calib::EyeFile& file,
-                           Session& session) {
-  const SessionCaptures taken = TRY(session_captures(file, id, 1.0 / board.source.frame_rate_hz));
-  Estimated made;
-  made.sensor = TRY(calib::sensor_noise(taken.series, board.eye.ommatidia(), taken.bits));
-  const calib::CodeNoise noise =
-      TRY(code_noise(taken, made.sensor, 1.0 / board.sensor.lsb(), request.plan.saturation_share));
-  calib::EstimateSettings settings;
-  settings.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
-  made.rows =
-      TRY(calib::estimate_response(taken.captures, noise, board.eye, board.object, settings, session.progress()));
-  session.end_progress();
-  EstimateOrigin origin;
-  origin.sessions = {id};
-  origin.program = request.program;
-  origin.method = "hybrid";
-  origin.plan = text_of(request.plan);
-  origin.distance_mm = request.distance_mm;
-  origin.made_unix_s = request.now_unix_s;
-  made.id = TRY(store(made.rows, taken.captures.linearity, made.sensor, origin, file));
-  return made;
-}
-
 /// "61 good, 2 dead, 1 does-not-fit".
 std::string statuses_of(const calib::ResponseEstimate& rows) {
   std::string text;
@@ -150,20 +105,6 @@ std::string statuses_of(const calib::ResponseEstimate& rows) {
   return text;
 }
 
-/// Standard deviation of a row's entries over their norm, of the median good row: what the row is known to.
-double row_error(const calib::ResponseEstimate& rows) {
-  std::vector<double> shares;
-  for (const calib::RowEstimate& row : rows.rows) {
-    double sigma2 = 0.0, value2 = 0.0;
-    for (std::size_t k = 0; k < row.values.size(); ++k) {
-      sigma2 += std::pow(static_cast<double>(row.sigmas[k]), 2);
-      value2 += std::pow(static_cast<double>(row.values[k]), 2);
-    }
-    if (value2 > 0.0) shares.push_back(std::sqrt(sigma2 / value2));
-  }
-  return calib::median(std::move(shares));
-}
-
 double median_chi2(const calib::ResponseEstimate& rows) {
   std::vector<double> all;
   for (const calib::RowEstimate& row : rows.rows) {
@@ -172,70 +113,84 @@ double median_chi2(const calib::ResponseEstimate& rows) {
   return calib::median(std::move(all));
 }
 
-Figures report_of(const CalibrateRequest& o, const Board& board, const calib::SessionProgress& p, std::int64_t id,
-                  std::int64_t captures, const Estimated& made) {
+Result<Figures> report_of(const CalibrateRequest& o, const calib::SessionProgress& p,
+                          const calib::StoredSession& session, const SessionEstimate& made,
+                          const calib::EyeFile& file) {
   std::uint64_t rejected = 0;
   for (const std::uint64_t count : p.rejected) rejected += count;
+  const std::optional<double> known = median_row_error(TRY(file.load_response(made.id)));
   const auto good = std::count_if(made.rows.rows.begin(), made.rows.rows.end(),
                                   [](const calib::RowEstimate& row) { return row.status == hal::ChannelStatus::good; });
   Figures f{{"file", o.eye},
-            {"board", board.name},
-            {"session", id},
+            {"serial", session.begun.serial},
+            {"session", session.id},
             {"estimate", made.id},
-            {"captures", captures},
+            {"captures", TRY(file.capture_count(session.id))},
             {"rejected", rejected},
             {"signal_lsb", p.signal_lsb},
             {"settle_ms", p.settle_ms},
-            {"channels", board.eye.ommatidia()},
+            {"distance_mm", session.begun.distance_mm},
+            {"channels", made.rows.rows.size()},
             {"good_channels", good},
-            {"row_error", row_error(made.rows)},
+            {"statuses", statuses_of(made.rows)},
+            {"row_error", known},
             {"held_out_chi2", median_chi2(made.rows)},
             {"plane_distance_error_mm", made.rows.plane.distance_mm},
             {"display_gamma", made.rows.gamma},
             {"display_black_level", made.rows.black_level}};
-  f.tell("{file}: session {session} of {board}, {captures} captures[; {rejected} were taken again]\n");
-  f.say(fmt::format("channels: {}\n", statuses_of(made.rows)));
-  return f.say(fmt::format(
-      "rows known to {:.2f} % (median of what is stated); patterns held out: chi^2 {:.2f} a sample\n"
-      "display: {:+.3f} mm from where the board has it, black level {:.4f}\n",
-      100.0 * row_error(made.rows), median_chi2(made.rows), made.rows.plane.distance_mm, made.rows.black_level));
+  return std::move(f.tell(
+      "{file}: session {session} of {serial} at {distance_mm} mm, {captures} captures[; {rejected} were taken again]\n"
+      "channels: {statuses}\n"
+      "rows known to {row_error:2%|no stated sigma} (median of what is stated); patterns held out: chi^2 "
+      "{held_out_chi2:3} a sample\n"
+      "display: {plane_distance_error_mm:3} mm from where the board has it, black level {display_black_level:2}\n"));
+}
+
+/// A session is taken, or what is left of one; the session that there is to estimate.
+Result<calib::StoredSession> taken(const CalibrateRequest& o, const Board& board, const sim::Scene& display,
+                                   calib::EyeFile& file, Teller& teller) {
+  if (o.resume) {
+    if (auto left = TRY(unestimated(file))) return std::move(*left);
+  }
+  const SimulatedBench bench = TRY(SimulatedBench::create(board, display, o.seed));
+  CalibrationRequest request;
+  if (!o.plan.empty()) request.plan = TRY(load_plan(o.plan));
+  request.resume = o.resume;
+  request.distance_mm = board.object.distance_mm;
+  request.configuration = configuration_of(board);
+  request.program = COMPUEYE_VERSION;
+  request.now_unix_s = now_unix_s();
+  const std::int64_t id = TRY(run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file,
+                                              [&](const calib::SessionProgress& p) { return teller.tell(p); }));
+  std::vector<calib::StoredSession> sessions = TRY(file.sessions());
+  return std::move(*std::ranges::find(sessions, id, &calib::StoredSession::id));
 }
 
 Result<void> calibrate(const CalibrateRequest& o, Session& session) {
-  const Board board = TRY(load_board(o.board));
-  CalibrationRequest request;
-  if (!o.plan.empty()) request.plan = TRY(load_plan(o.plan));
+  Board board = TRY(load_board(o.board));
+  TRY(o.overrides.apply(board));
   if (!board.source.simulated()) {
     return hal::fail(ErrorCode::unsupported, board.place("source", "kind"),
                      "is '" + board.source.kind + "': so far sessions are for simulated eyes, whose kind is 'sim'");
   }
-  const sim::Scene scene =
+  const sim::Scene display =
       o.scene.empty() ? plain_display(board) : TRY(choose_scene(board, SceneChoice{o.scene, 0, std::nullopt}));
-  const SimulatedBench bench = TRY(SimulatedBench::create(board, scene, o.seed));
-  calib::EyeFile file = TRY(open_eye(o, board));
-  request.resume = o.resume;
-  request.distance_mm = board.object.distance_mm;
-  request.configuration = configuration_of(board);
-  request.program = "compueye";
-  request.now_unix_s =
-      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  if (!o.plan.empty()) TRY(load_plan(o.plan));  // before a file is made
+  calib::EyeFile file = TRY(writable_eye_file(o.eye, board));
   Teller teller(session);
-  std::optional<std::int64_t> id;
-  std::optional<calib::StoredSession> left;
-  if (o.resume) left = TRY(unestimated(file));
-  if (left) {
-    id = left->id;
-    request.plan = TRY(parse_plan(left->begun.plan, o.eye));
-    request.distance_mm = left->begun.distance_mm;
-  } else {
-    id = TRY(run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file,
-                             [&](const calib::SessionProgress& p) { return teller.tell(p); }));
-  }
+  const calib::StoredSession done = TRY(taken(o, board, display, file, teller));
   session.end_progress();
-  const Estimated made = TRY(estimate(board, request, *id, file, session));
-  const Figures report = report_of(o, board, teller.last(), *id, TRY(file.capture_count(*id)), made);
+  EstimateRequest wanted;
+  wanted.exposure_s = eye_to_simulate(board).integration_s();
+  wanted.unit_lsb = 1.0 / board.sensor.lsb();
+  wanted.program = COMPUEYE_VERSION;
+  wanted.now_unix_s = now_unix_s();
+  wanted.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
+  const SessionEstimate made = TRY(estimate_session(file, done, wanted, session.progress()));
+  session.end_progress();
+  Figures report = TRY(report_of(o, teller.last(), done, made, file));
   TRY(file.close());
-  return session.print(report);
+  return session.print(std::move(report));
 }
 
 Action declare(OptionList& options) {
@@ -244,6 +199,7 @@ Action declare(OptionList& options) {
   options.add("--eye", o->eye, ".eye file that the session goes into; it is made where there is none").required();
   options.add("--plan", o->plan, ".toml file of what is captured (default: see docs/calibration.md)");
   options.add("--scene", o->scene, ".toml file of what a simulated display is like");
+  options.settings("calibrate", o->overrides);
   options.add("--seed", o->seed, "of a simulated eye's noise");
   options.flag("--resume", o->resume, "go on with a session that was cut off, or with its estimate");
   options.json("print one object and nothing else on stdout");

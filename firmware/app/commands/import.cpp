@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,8 +8,9 @@
 #include "calib/eye_file/eye_file.hpp"
 #include "firmware/app/command.hpp"
 #include "firmware/eye/board.hpp"
-#include "firmware/eye/measured_eye.hpp"
+#include "firmware/eye/writable_eye_file.hpp"
 #include "firmware/files/response_file.hpp"
+#include "firmware/text/date.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -41,22 +41,6 @@ Result<recon::Response> read_rows(const ImportRequest& o, const Board& board) {
   return std::move(response).with_image(board.object.rows, board.object.cols);
 }
 
-/// Of the board's eye, made where there is none.
-Result<calib::EyeFile> open_file(const std::string& path, const Board& board) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    return calib::EyeFile::create(path, {board.source.serial, board.eye, board.object});
-  }
-  auto file = TRY(calib::EyeFile::open(path, calib::EyeFileMode::write));
-  TRY(check_is_of(file, board));
-  return file;
-}
-
-std::int64_t now_unix_s() {
-  using namespace std::chrono;
-  return duration_cast<seconds>(system_clock::now().time_since_epoch()).count();
-}
-
 calib::Estimate estimate_of(const ImportRequest& o, const Board& board) {
   calib::Estimate estimate;
   estimate.made_unix_s = now_unix_s();
@@ -73,7 +57,7 @@ Result<void> import_rows(const ImportRequest& o, Session& session) {
   TRY(o.overrides.apply(board));
   const recon::Response response = TRY(read_rows(o, board));
   TRY(session.check_stop());
-  calib::EyeFile file = TRY(open_file(o.eye, board));
+  calib::EyeFile file = TRY(writable_eye_file(o.eye, board));
   const calib::Estimate estimate = estimate_of(o, board);
   const std::int64_t id = TRY(file.store_estimate(estimate, response, {}));
   TRY(file.close());

@@ -1,10 +1,8 @@
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -12,7 +10,10 @@
 #include <vector>
 
 #include "calib/eye_file/eye_file.hpp"
+#include "calib/median.hpp"
 #include "firmware/app/commands/inspect.hpp"
+#include "firmware/calibration/row_error.hpp"
+#include "firmware/text/date.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -21,17 +22,10 @@ namespace {
 
 using hal::Result;
 
-std::string utc(std::int64_t unix_s) {
-  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(unix_s)));
-}
-
-/// NaN counts for nothing.
-Value median(std::vector<double> values) {
-  std::erase_if(values, [](double v) { return std::isnan(v); });
-  if (values.empty()) return {};
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// Null of nothing but NaN.
+Value median(const std::vector<double>& values) {
+  const bool told = std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); });
+  return told ? Value(calib::median(values)) : Value();
 }
 
 void add_eye(const calib::EyeIdentity& eye, Figures& f) {
@@ -139,23 +133,6 @@ Figures figures_of(const calib::StoredEstimate& stored, const calib::Estimate& e
           {"median_channel_sensor", medians(e.channel_sensor)}};
 }
 
-/// Relative, as the estimate itself has it; null where its sigmas are not known.
-Value row_error(const calib::MeasuredResponse& measured) {
-  if (measured.sigma.empty()) return {};
-  std::vector<double> errors;
-  std::size_t entry = 0;
-  for (int m = 0; m < measured.response.rows(); ++m) {
-    double squares = 0.0, error = 0.0;
-    measured.response.for_each_in_row(m, [&](std::int32_t, double value) {
-      const double sigma = measured.sigma[entry++];
-      squares += value * value;
-      error += sigma * sigma;
-    });
-    if (squares > 0.0) errors.push_back(std::sqrt(error / squares));
-  }
-  return median(std::move(errors));
-}
-
 void add_lines(const Figures& estimate, std::size_t i, Figures& f) {
   const auto of = [i](std::string_view key) { return fmt::format("{{estimates.{}.{}}}", i, key); };
   f.line(f.sentence("estimate " + of("id")), of("method") + " at " + of("distance_mm") + " mm, made " + of("made") +
@@ -181,7 +158,7 @@ Result<void> add_eye_file_figures(const std::string& path, Figures& figures) {
   figures.add("estimates", Value::List(estimates.begin(), estimates.end()), "estimates", "{:count}");
   for (std::size_t i = 0; i < estimates.size(); ++i) add_lines(estimates[i], i, figures);
   if (stored.empty()) return {};
-  figures.add("row_error", row_error(TRY(file.load_response(stored.back().id))), "newest rows",
+  figures.add("row_error", median_row_error(TRY(file.load_response(stored.back().id))), "newest rows",
               "known to {:2%|no stated sigma} (median relative error by their own sigma)");
   return {};
 }

@@ -1,9 +1,7 @@
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <ctime>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +11,7 @@
 
 #include "drivers/recording/recording_reader.hpp"
 #include "firmware/app/command.hpp"
+#include "firmware/text/date.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -50,10 +49,6 @@ class RecordingSummary {
   std::optional<std::uint32_t> last_config_;
   std::int64_t first_arrival_ns_ = 0, last_arrival_ns_ = 0;
 };
-
-std::string utc(std::int64_t unix_ns) {
-  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(unix_ns / 1'000'000'000)));
-}
 
 /// "key = value" lines as "key = value, ...", without those that spell the board out.
 std::string one_line(std::string_view settings) {
@@ -123,7 +118,7 @@ Figures RecordingSummary::report(const RecordingReader& reader) const {
             {"torn_tail", Figures{{"bytes", damage.torn_bytes},
                                   {"at_byte", damage.torn_bytes > 0 ? Value(damage.torn_at) : Value()}}},
             {"end", std::move(end)}};
-  f.tell("{file}: {file_bytes:bytes}, recorded ").say(utc(reader.header().began_unix_ns) + "\n");
+  f.tell("{file}: {file_bytes:bytes}, recorded ").say(utc(reader.header().began_unix_ns / 1'000'000'000) + "\n");
   f.tell(
       "source: {source.backend} {source.serial}, firmware {source.firmware}; {source.channels} channels of "
       "{source.bits} bits, ");

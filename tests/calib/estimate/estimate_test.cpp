@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/median.hpp"
 #include "sim/random/random.hpp"
 #include "sim/simulation.hpp"
 #include "tests/calib/estimate/reconstruction.hpp"

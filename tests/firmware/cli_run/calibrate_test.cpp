@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
+#include <fstream>
 #include <string>
+#include <vector>
 
 #include "calib/eye_file/eye_file.hpp"
 #include "firmware/calibration/calibration_run.hpp"
@@ -49,6 +51,20 @@ TEST_CASE("what a session measured is estimated by --resume where a stop came be
   const Ended run = test::compueye({"run", "--board", path, "--eye", eye, "--frames", "5", "--lossless", "--json"});
   REQUIRE_MESSAGE(run.exit_code == 0, run.err);
   CHECK(nlohmann::json::parse(run.out)["quality"]["nmse"].get<double>() < 0.05);
+  // Another distance goes into the same file, and neither stands for the other.
+  const auto plan = board.outside("p.toml");
+  std::ofstream(plan) << short_plan;
+  const std::vector<std::string> nearer{"--board", path, "--eye", eye, "--distance", "28"};
+  const auto with = [&](std::vector<std::string> all, const std::vector<std::string>& more) {
+    all.insert(all.end(), nearer.begin(), nearer.end());
+    all.insert(all.end(), more.begin(), more.end());
+    return test::compueye(all);
+  };
+  const Ended before = with({"run"}, {"--frames", "1"});
+  CHECK(before.exit_code == 1);
+  CHECK(contains(before.err, "no estimate at 28 mm"));
+  REQUIRE(with({"calibrate"}, {"--plan", plan.string()}).exit_code == 0);
+  CHECK(with({"run"}, {"--frames", "1", "--lossless"}).exit_code == 0);
   const Ended again = test::compueye({"calibrate", "--board", path, "--eye", eye, "--resume"});
   CHECK(again.exit_code == 2);
   CHECK(contains(again.err, "--resume"));

@@ -1,4 +1,4 @@
-#include "calib/estimate/channel_status.hpp"
+#include "calib/median.hpp"
 
 #include <algorithm>
 #include <cmath>

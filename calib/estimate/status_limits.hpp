@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "hal/channel_status.hpp"
 
 namespace compueye::calib {
@@ -19,7 +17,5 @@ struct StatusLimits {
   double misfit_chi2 = 4.0;          ///< and chi^2 a point: beyond both, a channel does not fit
   double blind_pixels = 0.5;         ///< drawn to see less than so many pixels: blind
 };
-
-[[nodiscard]] double median(std::vector<double> values) noexcept;  ///< NaN and none: 0
 
 }  // namespace compueye::calib
