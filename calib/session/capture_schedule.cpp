@@ -13,38 +13,32 @@ constexpr std::string_view white = "all-on", black = "black", splits = "blobs";
 /// Seeds of the ramp's patterns are apart from those of the response's.
 constexpr std::uint64_t ramp_seed = 0x72616d70;
 
-Wanted of_stage(Stage stage, std::string_view family, int frames) {
-  Wanted wanted;
-  wanted.stage = stage;
-  wanted.family = family;
-  wanted.frames = frames;
-  return wanted;
-}
-
 void add_ramp(const SessionPlan& plan, std::vector<Wanted>& all) {
   for (int step = 0; step < plan.ramp_steps; ++step) {
-    Wanted part = of_stage(Stage::ramp, splits, plan.ramp_frames);
+    Wanted part{.stage = Stage::ramp, .family = splits, .frames = plan.ramp_frames};
     part.seed = plan.seed ^ ramp_seed;
     part.index = step;
     all.push_back(part);
-    all.push_back(of_stage(Stage::ramp_white, white, plan.ramp_frames));
+    all.push_back({.stage = Stage::ramp_white, .family = white, .frames = plan.ramp_frames});
     part.stage = Stage::ramp_rest;
     all.push_back(part);
   }
 }
 
-void add_patterns(const SessionPlan& plan, std::int64_t count, std::vector<Wanted>& all) {
+void add_patterns(const SessionPlan& plan, std::string_view family, std::int64_t count, std::vector<Wanted>& all) {
+  const Wanted reference{.stage = Stage::reference, .family = white, .frames = plan.reference_frames};
+  const Wanted dark{.stage = Stage::interleaved_dark, .family = {}, .frames = plan.reference_frames};
   for (std::int64_t k = 0; k < count; ++k) {
-    if (k % plan.reference_every == 0) all.push_back(of_stage(Stage::reference, white, plan.reference_frames));
-    if (k % plan.dark_every == 0) all.push_back(of_stage(Stage::interleaved_dark, {}, plan.reference_frames));
+    if (k % plan.reference_every == 0) all.push_back(reference);
+    if (k % plan.dark_every == 0) all.push_back(dark);
     const bool held_out = k % plan.held_out_every == plan.held_out_every - 1;
-    Wanted pattern = of_stage(held_out ? Stage::held_out : Stage::pattern, plan.family, plan.frames);
+    Wanted pattern{.stage = held_out ? Stage::held_out : Stage::pattern, .family = family, .frames = plan.frames};
     pattern.seed = plan.seed;
     pattern.index = k;
     all.push_back(pattern);
   }
-  all.push_back(of_stage(Stage::reference, white, plan.reference_frames));
-  all.push_back(of_stage(Stage::interleaved_dark, {}, plan.reference_frames));
+  all.push_back(reference);
+  all.push_back(dark);
 }
 
 }  // namespace
@@ -80,13 +74,16 @@ std::string_view name(Stage stage) noexcept {
 std::vector<Wanted> capture_schedule(const SessionPlan& plan, int rows, int cols) {
   std::vector<Wanted> all;
   // Frame by frame: what a channel's codes vary by is told by no sum.
-  for (int k = 0; k < plan.dark_frames; ++k) all.push_back(of_stage(Stage::dark, {}, 1));
-  for (int k = 0; k < plan.black_frames; ++k) all.push_back(of_stage(Stage::black, black, 1));
-  for (int k = 0; k < plan.flat_frames; ++k) all.push_back(of_stage(Stage::flat, white, 1));
+  all.insert(all.end(), static_cast<std::size_t>(plan.dark_frames), {.stage = Stage::dark, .family = {}, .frames = 1});
+  all.insert(all.end(), static_cast<std::size_t>(plan.black_frames),
+             {.stage = Stage::black, .family = black, .frames = 1});
+  all.insert(all.end(), static_cast<std::size_t>(plan.flat_frames),
+             {.stage = Stage::flat, .family = white, .frames = 1});
   add_ramp(plan, all);
-  const auto family = pattern_family(plan.family);
-  const std::int64_t there_are = family ? (*family)->count(rows, cols) : 0;
-  add_patterns(plan, std::min(plan.patterns, there_are), all);
+  // By the list's name and not the plan's, which need not live as long.
+  if (const auto family = pattern_family(plan.family)) {
+    add_patterns(plan, (*family)->name, std::min(plan.patterns, (*family)->count(rows, cols)), all);
+  }
   return all;
 }
 

@@ -36,7 +36,7 @@ inline constexpr std::array all_stages{
 /// One thing to be captured.
 struct Wanted {
   Stage stage = Stage::dark;
-  std::string_view family;  ///< of pattern_families(); empty: no light
+  std::string_view family = {};  ///< of pattern_families(); empty: no light
   std::uint64_t seed = 0;
   std::int64_t index = 0;  ///< of ramp_rest: white less this pattern is shown
   int frames = 1;          ///< summed

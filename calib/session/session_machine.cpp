@@ -18,14 +18,6 @@ using hal::Result;
 
 constexpr int level_frames = 16;
 
-Wanted look(Stage stage, std::string_view family, int frames) {
-  Wanted wanted;
-  wanted.stage = stage;
-  wanted.family = family;
-  wanted.frames = frames;
-  return wanted;
-}
-
 double mean_code(const hal::SampleBlock& block) {
   double sum = 0.0;
   int count = 0;
@@ -100,15 +92,15 @@ void SessionMachine::begin(Phase phase) {
   switch (phase) {
     case Phase::warm_up:
     case Phase::rising:
-      return want(look(Stage::flat, "all-on", 1));
+      return want({.stage = Stage::flat, .family = "all-on", .frames = 1});
     case Phase::falling:
-      return want(look(Stage::black, "black", 1));
+      return want({.stage = Stage::black, .family = "black", .frames = 1});
     case Phase::level_dark:
-      return want(look(Stage::dark, {}, level_frames));
+      return want({.stage = Stage::dark, .family = {}, .frames = level_frames});
     case Phase::level_white:
-      return want(look(Stage::flat, "all-on", level_frames));
+      return want({.stage = Stage::flat, .family = "all-on", .frames = level_frames});
     case Phase::resume:
-      return want(look(Stage::resumed, "all-on", plan_.reference_frames));
+      return want({.stage = Stage::resumed, .family = "all-on", .frames = plan_.reference_frames});
     case Phase::captures:
       return;
   }
