@@ -76,7 +76,7 @@ SessionMachine::SessionMachine(const SessionPlan& plan, const SessionEye& eye, s
       resumed_(resumed),
       builder_(eye.channels, eye.configuration, saturated_code(plan, eye.bits),
                static_cast<int>(plan.saturated_channels * eye.channels)),
-      began_ns_(now_ns),
+      warm_ns_(now_ns + static_cast<std::int64_t>(plan.warm_up_s * 1e9)),
       position_(resumed.captures) {
   begin(Phase::warm_up);
 }
@@ -193,6 +193,7 @@ Result<void> SessionMachine::taken_too_often() const {
       return fail(ErrorCode::mismatch, place, begun + "its settings changed meanwhile: leave it alone, and resume");
     case Rejection::gap:
     case Rejection::overrun:
+    case Rejection::recovered:
       return fail(ErrorCode::io, place, begun + "see to the cable and the load of this machine, and resume");
   }
   return {};
@@ -231,7 +232,7 @@ Result<void> SessionMachine::saw_capture(const hal::SampleBlock& block, std::int
 Result<void> SessionMachine::saw(const hal::SampleBlock& block, std::int64_t now_ns) {
   const std::int64_t begun_ns = frame_time_.begun_ns(block.t_ns, block.flags.time_ok, now_ns);
   if (phase_ == Phase::warm_up) {
-    if (now_ns - began_ns_ >= static_cast<std::int64_t>(plan_.warm_up_s * 1e9)) begin(Phase::falling);
+    if (now_ns >= warm_ns_) begin(Phase::falling);
     return {};
   }
   if (phase_ == Phase::falling || phase_ == Phase::rising) return saw_settling(begun_ns, block);
@@ -249,6 +250,19 @@ void SessionMachine::committed(std::int64_t now_ns) noexcept {
     return;
   }
   want_capture(now_ns);
+}
+
+Result<void> SessionMachine::recovered(std::int64_t now_ns) {
+  if (need_ == Need::commit || need_ == Need::nothing) return {};  // what was taken is taken
+  if (phase_ == Phase::warm_up || phase_ == Phase::falling || phase_ == Phase::rising) {
+    // A change of light that was not seen tells no time, so that both are made again, from a white that has settled.
+    warm_ns_ = std::max(warm_ns_, now_ns + static_cast<std::int64_t>(plan_.settle_ms * 1e6));
+    begin(Phase::warm_up);
+    return {};
+  }
+  builder_.recovered();
+  need_ = Need::light;
+  return builder_.retakes() <= plan_.most_retakes ? Result<void>() : taken_too_often();
 }
 
 SessionProgress SessionMachine::progress(std::int64_t now_ns) const {

@@ -67,6 +67,9 @@ class SessionMachine {
   /// capture was taken again too often, io, or one of these.
   [[nodiscard]] hal::Result<void> saw(const hal::SampleBlock& block, std::int64_t now_ns);
   void committed(std::int64_t now_ns) noexcept;
+  /// The source lost its device or its stream, and has it back or is getting it back: the light is shown anew, since a
+  /// lamp of the device went out meanwhile, and what was being taken begins again. Errors: as of saw().
+  [[nodiscard]] hal::Result<void> recovered(std::int64_t now_ns);
 
  private:
   enum class Phase { warm_up, falling, rising, level_dark, level_white, resume, captures };
@@ -94,7 +97,7 @@ class SessionMachine {
   FrameTime frame_time_;
   std::optional<SettleWatch> watch_;
   Capture dark_, white_;  // of the check of the level
-  std::int64_t began_ns_ = 0, captures_began_ns_ = 0;
+  std::int64_t warm_ns_ = 0, captures_began_ns_ = 0;
   std::int64_t lit_ns_ = 0, stable_ns_ = 0, settle_ns_ = 0;
   std::int64_t position_ = 0;
   double signal_lsb_ = 0.0;
