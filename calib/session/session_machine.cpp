@@ -119,6 +119,7 @@ void SessionMachine::want_capture(std::int64_t now_ns) {
 void SessionMachine::lit(std::int64_t now_ns, std::int64_t stable_ns) noexcept {
   lit_ns_ = now_ns;
   stable_ns_ = stable_ns;
+  passed_over_ = 0;
   need_ = Need::frame;
   watch_.emplace(now_ns, std::max<std::int64_t>(static_cast<std::int64_t>(plan_.settle_ms * 1e6), stable_ns - now_ns));
 }
@@ -229,6 +230,17 @@ Result<void> SessionMachine::saw_capture(const hal::SampleBlock& block, std::int
   }
 }
 
+/// Frames of before are read within a moment, unless the two clocks part so fast that every frame seems to be one.
+Result<void> SessionMachine::pass_over(std::int64_t waited_ns) {
+  constexpr std::int64_t moment_ns = 10'000'000'000;
+  constexpr int most_at_hand = 100;
+  if (++passed_over_ < most_at_hand || waited_ns < moment_ns) return {};
+  return fail(ErrorCode::mismatch, "device time",
+              "falls behind by more than a " + std::to_string(FrameTime::most_drift) +
+                  "th of this machine's, so that frames cannot be told from those before a change of light: see to the "
+                  "clock of the eye's firmware");
+}
+
 Result<void> SessionMachine::saw(const hal::SampleBlock& block, std::int64_t now_ns) {
   const std::int64_t begun_ns = frame_time_.begun_ns(block.t_ns, block.flags.time_ok, now_ns);
   if (phase_ == Phase::warm_up) {
@@ -236,7 +248,8 @@ Result<void> SessionMachine::saw(const hal::SampleBlock& block, std::int64_t now
     return {};
   }
   if (phase_ == Phase::falling || phase_ == Phase::rising) return saw_settling(begun_ns, block);
-  if (begun_ns < std::max(stable_ns_, lit_ns_ + settle_ns_)) return {};
+  const std::int64_t settled_ns = std::max(stable_ns_, lit_ns_ + settle_ns_);
+  if (begun_ns < settled_ns) return pass_over(now_ns - settled_ns);
   return saw_capture(block, now_ns);
 }
 

@@ -360,6 +360,18 @@ TEST_CASE("a device that begins anew is believed about its time no more than bef
   for (std::size_t k = 0; k < whole.stored.size(); ++k) CHECK(bench.stored[k].codes == whole.stored[k].codes);
 }
 
+TEST_CASE("a device whose time falls behind is told so when frames cannot be told apart any more, and not before") {
+  for (const std::int64_t part : {2, 410}) {
+    CAPTURE(part);
+    Bench bench;
+    auto machine = bench.machine();
+    bench.spoil = [&](hal::SampleBlock& block) { block.t_ns -= (bench.now_ns - bench.period_ns) / part; };
+    const auto done = bench.drive(machine);
+    CHECK(done.has_value() == (part == 410));
+    if (!done) test::check_error(done, hal::ErrorCode::mismatch, "device time", {"400th"});
+  }
+}
+
 TEST_CASE("a plan that makes no sense is refused by the name of its setting") {
   const auto refused = [](hal::ErrorCode code, const std::string& place, const test::Named& named, auto change) {
     calib::SessionPlan plan;

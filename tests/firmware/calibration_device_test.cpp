@@ -42,18 +42,20 @@ CalibrationRequest small_request() {
 
 struct Lab {
   explicit Lab(const protocol::Bus& bus, double full_scales, double noise_lsb = 0.0)
-      : eye(bus, full_scales, noise_lsb) {}
+      : eye(full_scales), cable(eye, bus, clock) {
+    eye.noise_lsb = noise_lsb;
+  }
 
   hal::Result<std::int64_t> run(const CalibrationRequest& request, std::int64_t until = 1'000'000,
                                 const std::function<void(std::int64_t)>& at = {}) {
-    auto bench = AttachedBench::create(eye.source(), eye.board.object, {"device"}, eye.clock, {}, [] { return true; });
+    auto bench = AttachedBench::create(cable.source(), eye.board.object, {"device"}, clock, {}, [] { return true; });
     REQUIRE_MESSAGE(bench.has_value(), bench.error().text());
     eye.board.source.serial = bench->eye->describe().serial;
     auto file = std::ifstream(path).good()
                     ? calib::EyeFile::open(path, calib::EyeFileMode::write)
                     : calib::EyeFile::create(path, {eye.board.source.serial, eye.board.eye, eye.board.object});
     REQUIRE(file.has_value());
-    auto done = run_calibration(request, {*bench->eye, *bench->light, eye.clock, &bench->exposure}, *file,
+    auto done = run_calibration(request, {*bench->eye, *bench->light, clock, &bench->exposure}, *file,
                                 [&](const calib::SessionProgress& p) {
                                   if (at) at(p.taken);
                                   return p.taken < until;
@@ -77,6 +79,8 @@ struct Lab {
   test::TemporaryFolder folder;
   std::string path = (folder.path() / "lit.eye").string();
   LitEye eye;
+  hal::VirtualClock clock{1'000'000'000};
+  test::LitDevice cable;
   std::int64_t chosen_ns = 0;
   std::uint64_t restarts = 0;
 };
@@ -150,7 +154,7 @@ TEST_CASE("an eye that is pulled and plugged in again is lit again, and its capt
       if (when.empty() || taken < when.front()) return;
       when.erase(when.begin());
       const auto kind = when.size() == 1 ? protocol::FaultKind::reboot : protocol::FaultKind::unplug;
-      pulled.eye.device->inject({.kind = kind, .at_ns = pulled.eye.clock.now_ns(), .duration_ns = 700'000'000});
+      pulled.cable.device.inject({.kind = kind, .at_ns = pulled.clock.now_ns(), .duration_ns = 700'000'000});
     };
     const auto done = pulled.run(request, 1'000'000, pull);
     REQUIRE_MESSAGE(done.has_value(), done.error().text());
@@ -183,7 +187,7 @@ TEST_CASE("an eye that stays away ends the session, which can be resumed") {
   const auto gone = lab.run(small_request(), 1'000'000, [&](std::int64_t taken) {
     if (taken < 12 || pulled) return;
     pulled = true;
-    lab.eye.device->inject({.kind = protocol::FaultKind::unplug, .at_ns = lab.eye.clock.now_ns()});
+    lab.cable.device.inject({.kind = protocol::FaultKind::unplug, .at_ns = lab.clock.now_ns()});
   });
   test::check_error(gone, hal::ErrorCode::disconnected, "CE-LIT", {"--resume"});
   CHECK(lab.captures().size() <= 13);  // one may have been on its way
