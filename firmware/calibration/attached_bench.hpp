@@ -1,8 +1,6 @@
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <string_view>
 
 #include "drivers/device/device_source.hpp"
 #include "firmware/calibration/exposure_choice.hpp"
@@ -22,14 +20,12 @@ struct AttachedBench {
   /// With the eye of the board. `clock` must outlive it. Errors: those of attached_eye() and light_kind(), and of the
   /// light.
   [[nodiscard]] static hal::Result<AttachedBench> create(const Board& board, const LightWanted& wanted,
-                                                         hal::Clock& clock, std::function<void(std::string_view)> tell,
-                                                         std::function<bool()> go_on);
+                                                         hal::Clock& clock, Person person);
 
   /// The same with an eye that is there.
   [[nodiscard]] static hal::Result<AttachedBench> create(std::unique_ptr<device::DeviceSource> eye,
                                                          const hal::ObjectPlane& plane, const LightWanted& wanted,
-                                                         hal::Clock& clock, std::function<void(std::string_view)> tell,
-                                                         std::function<bool()> go_on);
+                                                         hal::Clock& clock, Person person);
 };
 
 }  // namespace compueye::firmware

@@ -93,7 +93,12 @@ Result<void> show(const CalibrationBench& bench, const calib::Wanted& wanted, Se
 
 Result<void> look(const CalibrationBench& bench, WatchedEye& eye, SessionMachine& machine,
                   const std::function<bool()>& go_on) {
-  const hal::SampleBlock block = TRY(eye.next(go_on));
+  // Also while no frame comes: a window that nobody looks after is covered by a question about it.
+  Result<void> attended;
+  const auto look_after_both = [&] { return (attended = bench.light.attend()).has_value() && go_on(); };
+  const auto seen = eye.next(look_after_both);
+  TRY(attended);
+  const hal::SampleBlock block = TRY(seen);
   TRY(bench.light.attend());
   TRY(eye.was_lost() ? machine.recovered(bench.clock.now_ns()) : machine.saw(block, bench.clock.now_ns()));
   return go_on() ? Result<void>() : fail(ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");

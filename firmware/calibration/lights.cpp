@@ -21,7 +21,7 @@ using Light = Result<std::unique_ptr<hal::Illuminator>>;
 
 /// Whoever waits beside a running eye reads it, so that its frames do not pile up and it is got back when it is lost.
 Result<void> keep_reading(const LightSite& site, std::int64_t wait_ns) {
-  if (!site.go_on()) return hal::fail(ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
+  if (!site.person.go_on()) return hal::fail(ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
   const std::int64_t until_ns = site.clock.now_ns() + wait_ns;
   if (!site.eye.started()) {
     site.clock.sleep_until_ns(until_ns);
@@ -36,7 +36,7 @@ Light display(const LightWanted& wanted, const LightSite& site) {
   auto light = TRY(illuminator::DisplayLight::create(
       {site.plane.rows, site.plane.cols, wanted.monitor, wanted.in_window}, site.clock));
   const illuminator::CentredPicture& place = light->place();
-  site.tell(fmt::format(
+  site.person.tell(fmt::format(
       "patterns are {} x {} pixels of the monitor, {} of each to a side of the pattern's own; the board has "
       "them {:g} x {:g} mm",
       place.width, place.height, place.scale, site.plane.width_mm, site.plane.height_mm));
@@ -69,9 +69,9 @@ Light manual(const LightWanted& wanted, const LightSite& site) {
   settings.cols = site.plane.cols;
   settings.file = wanted.picture;
   settings.write = [file = wanted.picture](const hal::Image& picture) { return write_png(file, picture); };
-  settings.tell = site.tell;
+  settings.tell = site.person.tell;
   settings.meanwhile = [site] { return keep_reading(site, wait_ns); };
-  settings.input = site.terminal;
+  settings.input = site.person.terminal;
   return TRY(illuminator::ManualLight::create(std::move(settings), site.clock));
 }
 

@@ -24,14 +24,19 @@ struct LightWanted {
   std::string picture = "pattern.png";  ///< that light by hand is asked for with
 };
 
+/// Whoever calibrates.
+struct Person {
+  std::function<void(std::string_view)> tell;  ///< takes a sentence
+  std::function<bool()> go_on;                 ///< false: wants it to stop
+  int terminal = 0;                            ///< file descriptor
+};
+
 /// What a light is made for, and what it may use. All of it outlives the light.
 struct LightSite {
   hal::ObjectPlane plane;
   device::DeviceSource& eye;
   hal::Clock& clock;
-  std::function<void(std::string_view)> tell;  ///< a sentence for whoever is there
-  std::function<bool()> go_on;                 ///< false: it was asked to stop
-  int terminal = 0;                            ///< file descriptor
+  Person person;
 };
 
 /// What puts patterns before an eye: a row each.

@@ -39,6 +39,13 @@ hal::Result<Source> simulated(const Board& board, EyeWanted wanted, hal::Clock& 
 /// Rows that were measured are of samples of their session's exposure.
 hal::Result<Source> attached(const Board& board, hal::Clock& clock) {
   const auto exposure_s = TRY(measured_exposure_s(board));
+  if (exposure_s && *exposure_s * board.source.frame_rate_hz > 1.0 + 1e-9) {
+    return hal::fail(
+        hal::ErrorCode::mismatch, board.eye_path(),
+        fmt::format("was measured with frames exposed for {:.4g} ms, which has no room at {:g} Hz; state a "
+                    "rate of at most {:.6g} Hz, or calibrate at this one",
+                    *exposure_s * 1e3, board.source.frame_rate_hz, 1.0 / *exposure_s));
+  }
   auto eye = TRY(attached_eye(board, clock));
   if (exposure_s) TRY(eye->set_exposure(std::llround(*exposure_s * 1e9)));
   return eye;

@@ -16,6 +16,8 @@
 #include "firmware/calibration/calibration_run.hpp"
 #include "firmware/calibration/session_estimate.hpp"
 #include "firmware/eye/measured_eye.hpp"
+#include "firmware/files/png.hpp"
+#include "tests/drivers/illuminator/typed_terminal.hpp"
 #include "tests/firmware/lit_eye.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/hal/error_check.hpp"
@@ -48,7 +50,7 @@ struct Lab {
 
   hal::Result<std::int64_t> run(const CalibrationRequest& request, std::int64_t until = 1'000'000,
                                 const std::function<void(std::int64_t)>& at = {}) {
-    auto bench = AttachedBench::create(cable.source(), eye.board.object, {"device"}, clock, {}, [] { return true; });
+    auto bench = AttachedBench::create(cable.source(), eye.board.object, light, clock, person);
     REQUIRE_MESSAGE(bench.has_value(), bench.error().text());
     eye.board.source.serial = bench->eye->describe().serial;
     auto file = std::ifstream(path).good()
@@ -78,6 +80,8 @@ struct Lab {
 
   test::TemporaryFolder folder;
   std::string path = (folder.path() / "lit.eye").string();
+  LightWanted light{"device"};
+  Person person{{}, [] { return true; }, -1};
   LitEye eye;
   hal::VirtualClock clock{1'000'000'000};
   test::LitDevice cable;
@@ -162,6 +166,35 @@ TEST_CASE("an eye that is pulled and plugged in again is lit again, and its capt
     CHECK(pulled.chosen_ns == whole.chosen_ns);
     check_same(pulled.captures(), whole.captures());
   }
+}
+
+TEST_CASE("light by hand gives the captures that lamps give, and a person whose terminal goes ends the session") {
+  Lab lamps(protocol::usb_bus, 0.8), hand(protocol::usb_bus, 0.8);
+  CalibrationRequest request = small_request();
+  request.plan.patterns = 20;
+  REQUIRE(lamps.run(request).has_value());
+  test::TypedTerminal terminal;
+  hand.light = {"manual", 0, false, (hand.folder.path() / "next.png").string()};
+  std::vector<double> seen(LitEye::pixels, 0.0);
+  hand.eye.light = [&](std::size_t n) { return seen[n]; };
+  hand.person.terminal = terminal.file();
+  hand.person.tell = [&](std::string_view request_for) {
+    std::fill(seen.begin(), seen.end(), 0.0);
+    if (request_for.find("next.png") != std::string_view::npos) {
+      const hal::Image picture = read_png(hand.light.picture).value();
+      std::copy(picture.pixels.begin(), picture.pixels.end(), seen.begin());
+    }
+    terminal.type("\n");
+  };
+  const auto done = hand.run(request);
+  REQUIRE_MESSAGE(done.has_value(), done.error().text());
+  check_same(hand.captures(), lamps.captures());
+
+  Lab alone(protocol::usb_bus, 0.8);
+  alone.light = hand.light;
+  alone.person = hand.person;
+  alone.person.tell = [&](std::string_view) { terminal.leave(); };
+  test::check_error(alone.run(request), hal::ErrorCode::end_of_stream, "terminal", {"--resume"});
 }
 
 TEST_CASE("a session on a cable goes on in another process, at the exposure that it began with") {

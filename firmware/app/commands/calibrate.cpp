@@ -181,9 +181,9 @@ Result<std::int64_t> take_simulated(const CalibrateRequest& o, const Board& boar
 }
 
 Result<AttachedBench> attached_bench(const CalibrateRequest& o, const Board& board, Session& session) {
-  return AttachedBench::create(
-      board, o.light, session.clock(), [&session](std::string_view sentence) { session.note(sentence); },
-      [&session] { return !session.stop_requested(); });
+  return AttachedBench::create(board, o.light, session.clock(),
+                               {[&session](std::string_view sentence) { session.note(sentence); },
+                                [&session] { return !session.stop_requested(); }});
 }
 
 /// The session that there is to estimate, and its file, which is of the eye that is there.

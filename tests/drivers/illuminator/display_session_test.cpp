@@ -32,9 +32,9 @@ TEST_CASE("every capture of a session before a display is of its own pattern and
   std::vector<std::string> told;
   LightWanted light;
   light.kind = "display";
-  const auto bench = AttachedBench::create(
-      cable.source(), eye.board.object, light, clock, [&](std::string_view line) { told.emplace_back(line); },
-      [] { return true; });
+  const auto bench =
+      AttachedBench::create(cable.source(), eye.board.object, light, clock,
+                            {[&](std::string_view line) { told.emplace_back(line); }, [] { return true; }});
   REQUIRE_MESSAGE(bench.has_value(), bench.error().text());
   REQUIRE(told.size() == 1);
   CHECK(told[0].find("200 x 200") != std::string::npos);

@@ -1,14 +1,13 @@
 #include "drivers/illuminator/manual_light.hpp"
 
 #include <doctest/doctest.h>
-#include <fcntl.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include <array>
 #include <string>
 #include <vector>
 
+#include "tests/drivers/illuminator/typed_terminal.hpp"
 #include "tests/hal/error_check.hpp"
 
 using namespace compueye;
@@ -17,47 +16,25 @@ namespace {
 
 /// A person at a terminal, who types what `answers` say when told something.
 struct Person {
-  int hand = ::posix_openpt(O_RDWR | O_NOCTTY);
-  int terminal = -1;
+  test::TypedTerminal terminal;
   std::vector<hal::Image> written;
   std::vector<std::string> told;
   std::string answer = "\n";
   int waited = 0, patience = 1000;
-
-  Person() {
-    REQUIRE(hand >= 0);
-    REQUIRE(::grantpt(hand) == 0);
-    REQUIRE(::unlockpt(hand) == 0);
-    terminal = ::open(::ptsname(hand), O_RDWR | O_NOCTTY);
-    REQUIRE(terminal >= 0);
-  }
-  Person(const Person&) = delete;
-  Person& operator=(const Person&) = delete;
-  ~Person() {
-    leave();
-    ::close(terminal);
-  }
-  void type(const std::string& text) const {
-    REQUIRE(::write(hand, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
-  }
-  void leave() {
-    if (hand >= 0) ::close(hand);
-    hand = -1;
-  }
 
   illuminator::ManualSettings settings() {
     illuminator::ManualSettings settings;
     settings.rows = 2;
     settings.cols = 2;
     settings.file = "next.png";
-    settings.input = terminal;
+    settings.input = terminal.file();
     settings.write = [this](const hal::Image& picture) -> hal::Result<void> {
       written.push_back(picture);
       return {};
     };
     settings.tell = [this](std::string_view line) { told.emplace_back(line); };
     settings.meanwhile = [this]() -> hal::Result<void> {
-      if (++waited == 3 && hand >= 0) type(answer);
+      if (++waited == 3 && !terminal.left()) terminal.type(answer);
       if (waited > patience) return hal::fail(hal::ErrorCode::interrupted, "test", "nobody came");
       return {};
     };
@@ -97,7 +74,7 @@ TEST_CASE("a key pressed before the picture was asked for does not count, nor on
   Person person;
   hal::VirtualClock clock;
   const auto light = illuminator::ManualLight::create(person.settings(), clock).value();
-  person.type("\n\n");
+  person.terminal.type("\n\n");
   person.answer = "x";
   const std::vector<float> white(4, 1.0F);
   test::check_error(light->show(white), hal::ErrorCode::interrupted, "test", {});
@@ -125,7 +102,7 @@ TEST_CASE("what is no terminal, and one whose input ends, are errors that say so
     const auto light = illuminator::ManualLight::create(person.settings(), clock).value();
     person.answer = "\x04";  // Ctrl-D
     test::check_error(light->show(white), hal::ErrorCode::end_of_stream, "terminal", {"--resume"});
-    person.leave();
+    person.terminal.leave();
     test::check_error(light->show(white), hal::ErrorCode::end_of_stream, "terminal", {"--resume"});
     test::check_error(light->show(std::vector<float>(3, 1.0F)), hal::ErrorCode::mismatch, "picture", {"3", "4"});
   }
