@@ -1,6 +1,7 @@
 #include "drivers/illuminator/device_light.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 

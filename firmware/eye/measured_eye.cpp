@@ -192,7 +192,7 @@ Result<MeasuredRows> measured_rows(const Board& board) {
 
 Result<std::optional<double>> measured_exposure_s(const Board& board) {
   const std::optional<double> unknown;
-  if (board.eye_path().empty()) return unknown;
+  if (board.eye_file.empty()) return unknown;
   const auto file = TRY(calib::EyeFile::open(board.eye_path(), calib::EyeFileMode::read));
   TRY(check_is_of(file, board));
   const auto stored = TRY(newest_of(file, board.object.distance_mm));
