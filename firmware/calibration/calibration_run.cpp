@@ -104,7 +104,9 @@ Result<hal::SampleBlock> next_frame(const CalibrationBench& bench, const std::fu
   }
 }
 
-Result<void> take(const CalibrationBench& bench, EyeFile& file, std::int64_t session, SessionMachine& machine,
+using Keep = std::function<Result<void>(const calib::Capture&)>;
+
+Result<void> take(const CalibrationBench& bench, SessionMachine& machine, const Keep& keep,
                   const CalibrationWatch& watch) {
   const auto go_on = [&] { return watch(machine.progress(bench.clock.now_ns())); };
   while (machine.need() != Need::nothing) {
@@ -119,7 +121,7 @@ Result<void> take(const CalibrationBench& bench, EyeFile& file, std::int64_t ses
         break;
       }
       case Need::commit:
-        TRY(file.append_capture(session, machine.capture()));
+        TRY(keep(machine.capture()));
         machine.committed(bench.clock.now_ns());
         break;
       case Need::nothing:
@@ -160,9 +162,34 @@ Result<std::int64_t> run_calibration(const CalibrationRequest& request, const Ca
     const Begun begun = TRY(begin(request, session_of(request, eye, config_id), file));
     auto machine = TRY(SessionMachine::create(request.plan, {eye.channels, eye.bits, config_id}, display.rows,
                                               display.cols, begun.done, bench.clock.now_ns()));
-    TRY(take(bench, file, begun.id, machine, watch));
+    const auto keep = [&](const calib::Capture& capture) -> Result<void> {
+      TRY(file.append_capture(begun.id, capture));
+      return {};
+    };
+    TRY(take(bench, machine, keep, watch));
     TRY(file.end_session(begun.id));
     return begun.id;
+  }();
+  bench.eye.stop();
+  return ended;
+}
+
+Result<std::vector<calib::Capture>> take_captures(const calib::SessionPlan& plan,
+                                                  const std::vector<calib::Wanted>& schedule,
+                                                  const CalibrationBench& bench, const CalibrationWatch& watch) {
+  const hal::SourceDescription eye = bench.eye.describe();
+  TRY(bench.eye.start());
+  const auto ended = [&]() -> Result<std::vector<calib::Capture>> {
+    const std::uint32_t config_id = TRY(next_frame(bench, [&] { return watch({}); })).config_id;
+    auto machine =
+        TRY(SessionMachine::create(plan, {eye.channels, eye.bits, config_id}, schedule, {}, bench.clock.now_ns()));
+    std::vector<calib::Capture> taken;
+    const auto keep = [&](const calib::Capture& capture) {
+      taken.push_back(capture);
+      return Result<void>();
+    };
+    TRY(take(bench, machine, keep, watch));
+    return taken;
   }();
   bench.eye.stop();
   return ended;
