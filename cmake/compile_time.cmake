@@ -13,7 +13,7 @@ macro(compueye_compile_quickly)
   if(COMPUEYE_SANITIZE)
     add_compile_options(-O0)
   elseif(CMAKE_BUILD_TYPE STREQUAL "Release")
-    add_compile_options(-O1)
+    add_compile_options(-Og)
   endif()
 endmacro()
 

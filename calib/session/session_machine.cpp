@@ -53,19 +53,27 @@ std::int32_t largest_code(int bits) {
 Result<SessionMachine> SessionMachine::create(const SessionPlan& plan, const SessionEye& eye, int rows, int cols,
                                               const Resumed& resumed, std::int64_t now_ns) {
   TRY(validate(plan));
+  return create(plan, eye, capture_schedule(plan, rows, cols), resumed, now_ns);
+}
+
+Result<SessionMachine> SessionMachine::create(const SessionPlan& plan, const SessionEye& eye,
+                                              std::vector<Wanted> schedule, const Resumed& resumed,
+                                              std::int64_t now_ns) {
+  TRY(validate(plan));
   if (eye.channels < 1 || eye.bits < 1 || eye.bits > 24) {
     return fail(ErrorCode::out_of_range, "eye",
                 "has " + std::to_string(eye.channels) + " channels of " + std::to_string(eye.bits) +
                     " bits, expected at least one, of 1 to 24 bits");
   }
-  const int most = std::max({plan.frames, plan.ramp_frames, plan.reference_frames, level_frames});
+  int most = level_frames;
+  for (const Wanted& each : schedule) most = std::max(most, each.frames);
   const std::int64_t hold = std::numeric_limits<std::int32_t>::max() / (largest_code(eye.bits) + 1);
   if (most > hold) {
     return fail(ErrorCode::out_of_range, "plan",
                 "averages " + std::to_string(most) + " frames in a capture, expected at most " + std::to_string(hold) +
                     " of " + std::to_string(eye.bits) + " bits: take more patterns instead");
   }
-  return SessionMachine(plan, eye, capture_schedule(plan, rows, cols), resumed, now_ns);
+  return SessionMachine(plan, eye, std::move(schedule), resumed, now_ns);
 }
 
 SessionMachine::SessionMachine(const SessionPlan& plan, const SessionEye& eye, std::vector<Wanted> schedule,

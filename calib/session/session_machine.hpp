@@ -54,6 +54,10 @@ class SessionMachine {
   /// Errors: those of validate(SessionPlan); out_of_range (more frames than a capture's sums hold; no channels).
   [[nodiscard]] static hal::Result<SessionMachine> create(const SessionPlan& plan, const SessionEye& eye, int rows,
                                                           int cols, const Resumed& resumed, std::int64_t now_ns);
+  /// The same for a schedule of one's own.
+  [[nodiscard]] static hal::Result<SessionMachine> create(const SessionPlan& plan, const SessionEye& eye,
+                                                          std::vector<Wanted> schedule, const Resumed& resumed,
+                                                          std::int64_t now_ns);
 
   [[nodiscard]] Need need() const noexcept { return need_; }
   [[nodiscard]] const Wanted& wanted() const noexcept { return wanted_; }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -104,8 +105,10 @@ Result<void> look(const CalibrationBench& bench, WatchedEye& eye, SessionMachine
   return go_on() ? Result<void>() : fail(ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
 }
 
-Result<void> take(const CalibrationBench& bench, WatchedEye& eye, EyeFile& file, std::int64_t session,
-                  SessionMachine& machine, const CalibrationWatch& watch) {
+using Keep = std::function<Result<void>(const calib::Capture&)>;
+
+Result<void> take(const CalibrationBench& bench, WatchedEye& eye, SessionMachine& machine, const Keep& keep,
+                  const CalibrationWatch& watch) {
   const auto go_on = [&] { return watch(machine.progress(bench.clock.now_ns())); };
   while (machine.need() != Need::nothing) {
     switch (machine.need()) {
@@ -118,7 +121,7 @@ Result<void> take(const CalibrationBench& bench, WatchedEye& eye, EyeFile& file,
       case Need::commit: {
         calib::Capture capture = machine.capture();
         if (bench.exposure != nullptr) capture.exposure_s = static_cast<double>(bench.exposure->now_ns) * 1e-9;
-        TRY(file.append_capture(session, capture));
+        TRY(keep(capture));
         machine.committed(bench.clock.now_ns());
         break;
       }
@@ -181,9 +184,35 @@ Result<std::int64_t> run_calibration(const CalibrationRequest& request, const Ca
     const Begun begun = TRY(begin(session_of(request, bench, config_id), file));
     auto machine =
         TRY(SessionMachine::create(request.plan, seen, display.rows, display.cols, begun.done, bench.clock.now_ns()));
-    TRY(take(bench, eye, file, begun.id, machine, watch));
+    const auto keep = [&](const calib::Capture& capture) -> Result<void> {
+      TRY(file.append_capture(begun.id, capture));
+      return {};
+    };
+    TRY(take(bench, eye, machine, keep, watch));
     TRY(file.end_session(begun.id));
     return begun.id;
+  }();
+  bench.eye.stop();
+  return ended;
+}
+
+Result<std::vector<calib::Capture>> take_captures(const calib::SessionPlan& plan,
+                                                  const std::vector<calib::Wanted>& schedule,
+                                                  const CalibrationBench& bench, const CalibrationWatch& watch) {
+  const hal::SourceDescription described = bench.eye.describe();
+  TRY(bench.eye.start());
+  WatchedEye eye(bench.eye, bench.clock);
+  const auto ended = [&]() -> Result<std::vector<calib::Capture>> {
+    const std::uint32_t config_id = TRY(eye.next([&] { return watch({}); })).config_id;
+    auto machine = TRY(SessionMachine::create(plan, {described.channels, described.bits, config_id}, schedule, {},
+                                              bench.clock.now_ns()));
+    std::vector<calib::Capture> taken;
+    const auto keep = [&](const calib::Capture& capture) {
+      taken.push_back(capture);
+      return Result<void>();
+    };
+    TRY(take(bench, eye, machine, keep, watch));
+    return taken;
   }();
   bench.eye.stop();
   return ended;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "calib/eye_file/eye_file.hpp"
 #include "calib/session/session_machine.hpp"
@@ -48,5 +49,12 @@ using CalibrationWatch = std::function<bool(const calib::SessionProgress&)>;
 [[nodiscard]] hal::Result<std::int64_t> run_calibration(const CalibrationRequest& request,
                                                         const CalibrationBench& bench, calib::EyeFile& file,
                                                         const CalibrationWatch& watch);
+
+/// Takes what a schedule asks for, after the plan's warm-up and looks at the light, and keeps it nowhere. Errors: as
+/// above, but those of the file.
+[[nodiscard]] hal::Result<std::vector<calib::Capture>> take_captures(const calib::SessionPlan& plan,
+                                                                     const std::vector<calib::Wanted>& schedule,
+                                                                     const CalibrationBench& bench,
+                                                                     const CalibrationWatch& watch);
 
 }  // namespace compueye::firmware

@@ -5,7 +5,7 @@
 namespace compueye::recon {
 
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix) {
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
+  return Eigen::BDCSVD<Eigen::MatrixXd>(matrix).singularValues();
 }
 
 void right_singular_pairs(const Eigen::MatrixXd& matrix, Eigen::VectorXd& values, Eigen::MatrixXd& vectors) {

@@ -13,7 +13,7 @@
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(COMPUEYE_THREAD_SANITIZED)
 // GLib's locks go to the kernel past the sanitizer, which then sees no order between umockdev's thread and the one that
 // started it.
 extern "C" const char* __tsan_default_suppressions();

@@ -1,0 +1,222 @@
+#include "calib/check/eye_change.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+namespace compueye::calib {
+namespace {
+
+using hal::ErrorCode;
+using hal::fail;
+using hal::Result;
+
+constexpr Eigen::Index axes = static_cast<Eigen::Index>(turn_axes), shared = 1 + axes;
+constexpr double question = false_alarms / 4.0;
+/// What slopes that are taken from pixels are wrong by, where cones have hard edges: a turn leaves so much unexplained.
+constexpr double slope_error = 0.25;
+
+/// Of a normal number, both ways.
+double chance_of_normal(double deviations) noexcept {
+  return std::erfc(std::fabs(deviations) / std::sqrt(2.0));
+}
+
+/// Of the sum of three squares (Abramowitz and Stegun 26.4.4).
+double chance_of_three(double chi2) noexcept {
+  return std::erfc(std::sqrt(chi2 / 2.0)) + std::sqrt(2.0 * chi2 / std::acos(-1.0)) * std::exp(-chi2 / 2.0);
+}
+
+/// Of the sum of many squares (Wilson and Hilferty 1931), above only.
+double chance_of_many(double chi2, double count) noexcept {
+  const double part = 2.0 / (9.0 * count);
+  return 0.5 * std::erfc((std::cbrt(chi2 / count) - (1.0 - part)) / std::sqrt(2.0 * part));
+}
+
+class Fit {
+ public:
+  explicit Fit(const CheckSamples& samples)
+      : s_(samples),
+        width_(static_cast<std::size_t>(samples.channels)),
+        in_(samples.judged.begin(), samples.judged.end()) {
+    usual_slopes_.assign(samples.then.size() / width_, Eigen::Matrix3d::Zero());
+    for (std::size_t at = 0; at < samples.then.size(); ++at) {
+      const Eigen::Vector3d each = slopes(at).tail<axes>();
+      usual_slopes_[at / width_] += each * each.transpose() / static_cast<double>(width_);
+    }
+  }
+
+  /// A channel of which no picture gives light tells nothing.
+  [[nodiscard]] std::size_t leave_out_the_dark() {
+    std::size_t left = 0;
+    for (std::size_t m = 0; m < width_; ++m) {
+      in_[m] = in_[m] != 0 && own(m).sigma < 1.0 ? 1 : 0;
+      left += in_[m];
+    }
+    return left;
+  }
+
+  /// Again, since how well slopes explain a turn depends on the turn.
+  void solve() {
+    constexpr int rounds = 3;
+    for (int round = 0; round < rounds; ++round) solve_once();
+  }
+
+  /// By how much of its light a channel alone has changed, beside what all did.
+  [[nodiscard]] Tested own(std::size_t m) const {
+    double product = 0.0, square = 0.0;
+    for (std::size_t at = m; at < s_.then.size(); at += width_) {
+      if (!usable(at)) continue;
+      product += s_.then[at] * left(at) / variance(at);
+      square += s_.then[at] * s_.then[at] / variance(at);
+    }
+    Tested tested;
+    if (!(square > 0.0)) return {0.0, 1.0, 1.0};
+    tested.value = product / square;
+    tested.sigma = 1.0 / std::sqrt(square);
+    tested.chance = chance_of_normal(tested.value / tested.sigma);
+    return tested;
+  }
+
+  [[nodiscard]] bool in(std::size_t m) const noexcept { return in_[m] != 0; }
+  void take_out(std::size_t m) noexcept { in_[m] = 0; }
+  [[nodiscard]] std::size_t width() const noexcept { return width_; }
+
+  void tell(EyeChange& change) const {
+    change.gain.value = x_[0];
+    change.gain.sigma = std::sqrt(covariance_(0, 0) + s_.light_spread * s_.light_spread);
+    change.gain.chance = chance_of_normal(change.gain.value / change.gain.sigma);
+    const Eigen::Vector3d turn = x_.segment<axes>(1);
+    const Eigen::Matrix3d of_turn = covariance_.bottomRightCorner<axes, axes>();
+    for (std::size_t a = 0; a < turn_axes; ++a) {
+      const auto axis = static_cast<Eigen::Index>(a);
+      change.turn_rad[a] = turn[axis];
+      change.turn_sigma[a] = std::sqrt(of_turn(axis, axis));
+    }
+    change.turn_chance = chance_of_three(turn.dot(of_turn.ldlt().solve(turn)));
+    double chi2 = 0.0, count = -static_cast<double>(x_.size());
+    for (std::size_t at = 0; at < s_.then.size(); ++at) {
+      if (in_[at % width_] == 0 || !usable(at)) continue;
+      chi2 += left(at) * left(at) / variance(at);
+      count += 1.0;
+    }
+    if (count < 1.0) return;
+    change.rest_chi2 = chi2 / count;
+    // A noise that was measured by 64 frames is known to a tenth.
+    constexpr double known_to = 1.1;
+    change.rest_chance = chance_of_many(chi2 / (known_to * known_to), count);
+  }
+
+ private:
+  void solve_once() {
+    const Eigen::Index unknowns = shared + static_cast<Eigen::Index>(s_.then.size() / width_);
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(unknowns, unknowns);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
+    for (std::size_t at = 0; at < s_.then.size(); ++at) {
+      if (in_[at % width_] == 0 || !usable(at)) continue;
+      const Eigen::Vector4d slope = slopes(at);
+      const Eigen::Index own = own_light(at);
+      const double weight = 1.0 / variance(at), off = s_.now[at] - s_.then[at];
+      normal.topLeftCorner<shared, shared>() += weight * slope * slope.transpose();
+      normal.col(own).head<shared>() += weight * slope[0] * slope;
+      normal(own, own) += weight * slope[0] * slope[0];
+      right.head<shared>() += weight * off * slope;
+      right[own] += weight * off * slope[0];
+    }
+    normal.bottomLeftCorner(unknowns - shared, shared) = normal.topRightCorner(shared, unknowns - shared).transpose();
+    // Where the pictures tell nothing of a turn there is none, and a light that is steady stays so.
+    constexpr double steady = 1e-6;
+    normal.diagonal().segment<axes>(1).array() += 1.0;
+    normal.diagonal().tail(unknowns - shared).array() += 1.0 / (s_.light_spread * s_.light_spread + steady * steady);
+    const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
+    x_ = solver.solve(right);
+    covariance_ = solver.solve(Eigen::MatrixXd::Identity(unknowns, unknowns)).topLeftCorner<shared, shared>();
+  }
+
+  [[nodiscard]] bool usable(std::size_t at) const noexcept {
+    return std::isfinite(s_.then[at]) && std::isfinite(s_.now[at]) && variance(at) > 0.0 && std::isfinite(variance(at));
+  }
+  [[nodiscard]] double variance(std::size_t at) const noexcept {
+    double by_turn = 0.0;
+    if (x_.size() > 0) {
+      const Eigen::Vector3d turn = x_.segment<axes>(1);
+      const double own = slopes(at).tail<axes>().dot(turn);
+      by_turn = slope_error * slope_error * (own * own + turn.dot(usual_slopes_[at / width_] * turn));
+    }
+    return s_.then_variance[at] + s_.now_variance[at] + by_turn;
+  }
+  /// By gain and turn.
+  [[nodiscard]] Eigen::Vector4d slopes(std::size_t at) const noexcept {
+    return {s_.then[at], s_.by_turn[at][0], s_.by_turn[at][1], s_.by_turn[at][2]};
+  }
+  [[nodiscard]] Eigen::Index own_light(std::size_t at) const noexcept {
+    return shared + static_cast<Eigen::Index>(at / width_);
+  }
+  [[nodiscard]] double left(std::size_t at) const noexcept {
+    if (x_.size() == 0) return s_.now[at] - s_.then[at];
+    return s_.now[at] - s_.then[at] - slopes(at).dot(x_.head<shared>()) - s_.then[at] * x_[own_light(at)];
+  }
+
+  const CheckSamples& s_;
+  std::size_t width_;
+  std::vector<std::uint8_t> in_;
+  std::vector<Eigen::Matrix3d> usual_slopes_;  // mean squares, a picture
+  Eigen::VectorXd x_;                          // gain, turn, the light of each picture
+  Eigen::Matrix4d covariance_ = Eigen::Matrix4d::Identity();
+};
+
+/// Takes out what stands out, until nothing does or half are out.
+void find_channels(Fit& fit, std::size_t judged, EyeChange& change) {
+  const double each = question / static_cast<double>(judged);
+  for (std::size_t out = 0; 2 * out < judged; ++out) {
+    fit.solve();
+    ChangedChannel worst{-1, {}};
+    for (std::size_t m = 0; m < fit.width(); ++m) {
+      if (!fit.in(m)) continue;
+      const Tested tested = fit.own(m);
+      const double ratio = std::fabs(tested.value) / tested.sigma;
+      const double worst_ratio = worst.channel < 0 ? 0.0 : std::fabs(worst.change.value) / worst.change.sigma;
+      if (tested.chance < each && ratio > worst_ratio) worst = {static_cast<int>(m), tested};
+    }
+    if (worst.channel < 0) return;
+    fit.take_out(static_cast<std::size_t>(worst.channel));
+    change.channels.push_back(worst);
+  }
+}
+
+}  // namespace
+
+Result<EyeChange> eye_change(const CheckSamples& samples) {
+  const auto channels = static_cast<std::size_t>(std::max(samples.channels, 0));
+  const std::size_t count = samples.then.size();
+  if (channels == 0 || count % channels != 0 || count == 0 || samples.judged.size() != channels ||
+      samples.then_variance.size() != count || samples.now.size() != count || samples.now_variance.size() != count ||
+      samples.by_turn.size() != count) {
+    return fail(ErrorCode::mismatch, "check",
+                "has samples, variances or slopes that are not of the same pictures and channels");
+  }
+  if (!(samples.light_spread >= 0.0 && std::isfinite(samples.light_spread))) {
+    return fail(ErrorCode::out_of_range, "check",
+                "has a light that goes " + std::to_string(samples.light_spread) + " of itself, expected 0 or more");
+  }
+  Fit fit(samples);
+  const std::size_t judged = fit.leave_out_the_dark();
+  if (judged < 4) {
+    return fail(ErrorCode::usage, "check",
+                "finds " + std::to_string(judged) + " channels that are good and give light, expected at least 4");
+  }
+  EyeChange change;
+  find_channels(fit, judged, change);
+  fit.solve();
+  for (ChangedChannel& each : change.channels) each.change = fit.own(static_cast<std::size_t>(each.channel));
+  std::ranges::sort(change.channels, {}, &ChangedChannel::channel);
+  fit.tell(change);
+  change.gain_changed = change.gain.chance < question;
+  change.turned = change.turn_chance < question;
+  change.rest_changed = change.rest_chance < question;
+  return change;
+}
+
+}  // namespace compueye::calib

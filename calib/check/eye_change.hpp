@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "calib/check/turn_slopes.hpp"
+#include "hal/result.hpp"
+
+namespace compueye::calib {
+
+/// The same K pictures before an eye of M channels, twice: in the session, and now.
+struct CheckSamples {
+  int channels = 0;
+  std::vector<double> then, then_variance;             ///< K x M, in fully seen white pixels; NaN: none
+  std::vector<double> now, now_variance;               ///< likewise
+  std::vector<std::array<double, turn_axes>> by_turn;  ///< K x M: what a turn changes, per radian
+  std::vector<std::uint8_t> judged;                    ///< M; 0: masked, tells nothing
+  double light_spread = 0.0;  ///< standard deviation of the light itself, relative: of one picture and from day to day
+};
+
+/// A quantity with its standard deviation, and how probable so large a one is where nothing has changed.
+struct Tested {
+  double value = 0.0, sigma = 0.0;
+  double chance = 1.0;
+};
+
+struct ChangedChannel {
+  int channel = 0;
+  Tested change;  ///< of its light, relative to what it gave and to all others
+};
+
+struct EyeChange {
+  Tested gain;                               ///< relative, common to all: of the light or of the eye
+  std::array<double, turn_axes> turn_rad{};  ///< of the eye, or of the display the other way
+  std::array<double, turn_axes> turn_sigma{};
+  double turn_chance = 1.0;              ///< of all three together
+  std::vector<ChangedChannel> channels;  ///< those that changed, ascending
+  double rest_chi2 = 0.0;                ///< a sample, of what all this leaves of the channels that did not
+  double rest_chance = 1.0;
+
+  bool gain_changed = false, turned = false, rest_changed = false;
+  [[nodiscard]] bool changed() const noexcept { return gain_changed || turned || rest_changed || !channels.empty(); }
+};
+
+/// False alarms a check: at most this share, each of its four questions taking a quarter of it.
+inline constexpr double false_alarms = 1e-3;
+
+/// Whether an eye sees as it did: its gain, its pose, single ommatidia, or anything else, told apart from noise. One
+/// weighted least squares fit of gain, turn and each picture's own light to all channels; a channel that stands out of
+/// it is taken out, the worst first, and the fit repeated, so that neither hides the other. What the light did by
+/// itself in the session counts as noise of the gain: a restless lamp hides a small change, and does not raise an
+/// alarm.
+///
+/// Errors: mismatch (sizes), out_of_range (a spread that is none), usage (fewer channels than four that give light).
+[[nodiscard]] hal::Result<EyeChange> eye_change(const CheckSamples& samples);
+
+}  // namespace compueye::calib

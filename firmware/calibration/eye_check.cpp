@@ -1,0 +1,215 @@
+#include "firmware/calibration/eye_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "calib/check/telling_patterns.hpp"
+#include "calib/emva1288.hpp"
+#include "calib/estimate/light_samples.hpp"
+#include "calib/patterns/pattern_family.hpp"
+#include "firmware/calibration/plan_file.hpp"
+#include "firmware/calibration/session_captures.hpp"
+#include "firmware/eye/measured_eye.hpp"
+#include "hal/channel_status.hpp"
+#include "hal/try.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::ErrorCode;
+using hal::fail;
+using hal::Result;
+
+constexpr std::size_t patterns_shown = 3;
+constexpr int patterns_looked_at = 48, dark_frames = 4;
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+struct Found {
+  std::int64_t id = 0;
+  calib::Estimate estimate;
+  calib::StoredSession session;
+};
+
+Result<Found> newest_of_a_session(const calib::EyeFile& file, double distance_mm) {
+  std::optional<Found> found;
+  const std::vector<calib::StoredSession> sessions = TRY(file.sessions());
+  for (const calib::StoredEstimate& each : TRY(file.estimates())) {
+    if (std::fabs(each.distance_mm - distance_mm) > same_distance_mm) continue;
+    calib::Estimate estimate = TRY(file.load_estimate(each.id));
+    if (estimate.sessions.empty()) continue;
+    const auto session = std::ranges::find(sessions, estimate.sessions.back(), &calib::StoredSession::id);
+    if (session != sessions.end()) found = Found{each.id, std::move(estimate), *session};
+  }
+  if (found) return std::move(*found);
+  return fail(ErrorCode::not_found, file.path(),
+              "has no estimate of a session at " + std::to_string(distance_mm) +
+                  " mm that an eye could be compared with: calibrate it there first");
+}
+
+/// How far the light went in the session by itself, relative.
+double spread_of(const std::vector<double>& lamp) {
+  double mean = 0.0, square = 0.0;
+  for (const double factor : lamp) mean += factor / static_cast<double>(lamp.size());
+  for (const double factor : lamp) square += (factor - mean) * (factor - mean);
+  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(lamp.size() - 1, 1)));
+}
+
+/// Of a channel that is noisier than the median one; nothing that is less noisy is believed to be.
+std::vector<double> own_noise(const calib::SensorNoise& sensor) {
+  std::vector<double> all;
+  const double middle = sensor.median.dark_noise_lsb.value_or(0.0);
+  for (const calib::ChannelNoise& channel : sensor.channels) {
+    const double own = channel.dark_noise_lsb.value_or(middle);
+    all.push_back(middle > 0.0 ? std::max(1.0, own * own / (middle * middle)) : 1.0);
+  }
+  return all;
+}
+
+/// What a session knows of the light that its patterns gave.
+struct LookedBack {
+  calib::SessionPlan plan;
+  calib::CodeNoise noise;
+  std::vector<double> own_noise;
+  std::vector<calib::LinearityTable> linearity;
+  calib::LightSamples light;
+  double white_frames = 0.0;  ///< averaged in light.white
+};
+
+Result<LookedBack> look_back(const calib::EyeFile& file, const calib::StoredSession& session, double exposure_s,
+                             double unit_lsb) {
+  const calib::EyeIdentity& eye = file.eye();
+  const int channels = eye.geometry.ommatidia(), pixels = eye.plane.pixels();
+  LookedBack back;
+  back.plan = TRY(parse_plan(session.begun.plan, file.path()));
+  SessionCaptures taken = TRY(session_captures(file, session, exposure_s));
+  const calib::Interleaved& references = taken.captures.references;
+  if (taken.captures.count(pixels) == 0 || references.count() == 0) {
+    return fail(ErrorCode::not_found, file.path(),
+                "has a session of " + std::to_string(taken.captures.count(pixels)) + " patterns and " +
+                    std::to_string(references.count()) + " references, expected some of both to compare with");
+  }
+  back.white_frames = static_cast<double>(references.count()) * references.frames;
+  const calib::SensorNoise sensor = TRY(calib::sensor_noise(taken.series, channels, session.begun.bits));
+  back.noise = code_noise(sensor, unit_lsb, saturated_code(back.plan, session.begun.bits));
+  back.own_noise = own_noise(sensor);
+  TRY(calib::validate(taken.captures, back.noise, eye.geometry, eye.plane));
+  back.light = calib::light_samples(taken.captures, back.noise, channels, pixels, {});
+  back.linearity = std::move(taken.captures.linearity);
+  return back;
+}
+
+Result<std::vector<hal::Image>> first_patterns(const LookedBack& back, const hal::ObjectPlane& plane) {
+  const calib::PatternFamily& family = *TRY(calib::pattern_family(back.plan.family));
+  std::vector<hal::Image> pictures;
+  const int count = std::min(back.light.patterns, patterns_looked_at);
+  for (int p = 0; p < count; ++p) pictures.push_back(TRY(family.draw(plane.rows, plane.cols, back.plan.seed, p)));
+  return pictures;
+}
+
+/// Of a sample of `light`, in frames of one pattern.
+double variance_of(const calib::LightSamples& samples, std::size_t pattern, double light, double own) {
+  return own * samples.fixed_variance[pattern] + samples.light_variance[pattern] * std::max(light, 0.0);
+}
+
+/// What the session saw of white, then of the patterns `told`.
+void add_then(const LookedBack& back, const std::vector<std::size_t>& told, calib::CheckSamples& s) {
+  const calib::LightSamples& light = back.light;
+  const double own_frames = light.patterns > 0 ? back.plan.frames : 1;
+  for (std::size_t m = 0; m < static_cast<std::size_t>(s.channels); ++m) {
+    const double one_frame = variance_of(light, 0, light.white[m], back.own_noise[m]) * own_frames;
+    s.then.push_back(light.white[m]);
+    s.then_variance.push_back(one_frame / back.white_frames);
+  }
+  for (const std::size_t p : told) {
+    for (std::size_t m = 0; m < static_cast<std::size_t>(s.channels); ++m) {
+      s.then.push_back(light.at(p, m));
+      s.then_variance.push_back(variance_of(light, p, light.at(p, m), back.own_noise[m]));
+    }
+  }
+}
+
+}  // namespace
+
+Result<EyeCheck> EyeCheck::create(const calib::EyeFile& file, double distance_mm, double exposure_s, double unit_lsb) {
+  const Found found = TRY(newest_of_a_session(file, distance_mm));
+  const hal::EyeGeometry& eye = file.eye().geometry;
+  hal::ObjectPlane plane = file.eye().plane;
+  plane.distance_mm = distance_mm;
+  LookedBack back = TRY(look_back(file, found.session, exposure_s, unit_lsb));
+  const recon::Response rows = TRY(file.load_response(found.id)).response;
+  const std::vector<hal::Image> patterns = TRY(first_patterns(back, plane));
+  const std::vector<std::size_t> told = calib::telling_patterns(rows, eye, plane, patterns, patterns_shown);
+
+  EyeCheck check;
+  check.session_ = found.session.id;
+  check.estimate_ = found.id;
+  calib::CheckSamples& s = check.samples_;
+  s.channels = eye.ommatidia();
+  s.light_spread = spread_of(back.light.lamp);
+  for (const hal::ChannelStatus status : found.estimate.status) {
+    s.judged.push_back(status == hal::ChannelStatus::good ? 1 : 0);
+  }
+  add_then(back, told, s);
+  s.by_turn = calib::turn_slopes(rows, eye, plane, hal::Image(plane.rows, plane.cols, 1.0F));
+  const std::string_view family = TRY(calib::pattern_family(back.plan.family))->name;
+  check.schedule_ = {{.stage = calib::Stage::interleaved_dark, .family = {}, .frames = dark_frames},
+                     {.stage = calib::Stage::reference, .family = "all-on", .frames = 1}};
+  for (const std::size_t p : told) {
+    calib::Wanted pattern{.stage = calib::Stage::pattern, .family = family, .frames = 1};
+    pattern.seed = back.plan.seed;
+    pattern.index = static_cast<std::int64_t>(p);
+    check.schedule_.push_back(pattern);
+    const auto slopes = calib::turn_slopes(rows, eye, plane, patterns[p]);
+    s.by_turn.insert(s.by_turn.end(), slopes.begin(), slopes.end());
+  }
+  check.plan_ = std::move(back.plan);
+  check.noise_ = back.noise;
+  check.own_noise_ = std::move(back.own_noise);
+  check.linearity_ = std::move(back.linearity);
+  return check;
+}
+
+Result<calib::EyeChange> EyeCheck::judge(std::span<const calib::Capture> captures) const {
+  const auto channels = static_cast<std::size_t>(samples_.channels);
+  if (captures.size() != schedule_.size()) {
+    return fail(ErrorCode::mismatch, "check",
+                "has " + std::to_string(captures.size()) + " captures, expected " + std::to_string(schedule_.size()));
+  }
+  calib::Captures now;
+  now.linearity = linearity_;
+  for (std::size_t k = 0; k < captures.size(); ++k) {
+    const calib::Capture& capture = captures[k];
+    if (capture.codes.size() != channels) {
+      return fail(ErrorCode::mismatch, "check",
+                  "has a capture of " + std::to_string(capture.codes.size()) + " channels, expected " +
+                      std::to_string(channels));
+    }
+    std::vector<double>& codes = k == 0 ? now.darks.codes : now.codes;
+    for (std::size_t m = 0; m < channels; ++m) {
+      const bool valid = capture.valid.empty() || capture.valid[m] != 0;
+      codes.push_back(valid ? static_cast<double>(capture.codes[m]) / capture.frames : not_a_number);
+    }
+    if (k > 0) now.frames.push_back(capture.frames);
+  }
+  now.darks.time = {0.0};
+  now.darks.frames = captures.front().frames;
+  now.time.assign(captures.size() - 1, 0.0);
+  now.patterns.assign(captures.size() - 1, 0.0F);  // one pixel each: only their number counts
+  const calib::LightSamples light = calib::light_samples(now, noise_, samples_.channels, 1, {});
+  calib::CheckSamples samples = samples_;
+  for (std::size_t p = 0; p + 1 < captures.size(); ++p) {
+    for (std::size_t m = 0; m < channels; ++m) {
+      samples.now.push_back(light.at(p, m));
+      // The dark that was taken off has noise of its own.
+      samples.now_variance.push_back(variance_of(light, p, light.at(p, m), own_noise_[m]) +
+                                     own_noise_[m] * light.fixed_variance[p] / dark_frames);
+    }
+  }
+  return calib::eye_change(samples);
+}
+
+}  // namespace compueye::firmware

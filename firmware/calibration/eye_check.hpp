@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "calib/check/eye_change.hpp"
+#include "calib/estimate/captures.hpp"
+#include "calib/eye_file/eye_file.hpp"
+#include "calib/session/capture_schedule.hpp"
+#include "calib/session/session_plan.hpp"
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// Whether an eye still sees as it did when it was calibrated: four frames under light and four without, against what
+/// the session itself had seen of the same pictures. No model of the eye is asked but for what a turn would change.
+class EyeCheck {
+ public:
+  /// By the newest estimate of the file at a distance that was made from a session. `exposure_s` and `unit_lsb` as in
+  /// EstimateRequest. Errors: those of the file and of session_captures(); not_found (no such estimate; the session has
+  /// no references or no patterns).
+  [[nodiscard]] static hal::Result<EyeCheck> create(const calib::EyeFile& file, double distance_mm, double exposure_s,
+                                                    double unit_lsb);
+
+  /// The session's, by which the light is found good enough.
+  [[nodiscard]] const calib::SessionPlan& plan() const noexcept { return plan_; }
+  [[nodiscard]] std::int64_t session() const noexcept { return session_; }
+  [[nodiscard]] std::int64_t estimate() const noexcept { return estimate_; }
+  /// What is to be taken: no light, white, and the three patterns that tell most of a turn.
+  [[nodiscard]] const std::vector<calib::Wanted>& schedule() const noexcept { return schedule_; }
+  /// Captures of that schedule, in its order. Errors: mismatch (others, or of other channels), and those of
+  /// calib::eye_change().
+  [[nodiscard]] hal::Result<calib::EyeChange> judge(std::span<const calib::Capture> captures) const;
+
+ private:
+  calib::SessionPlan plan_;
+  std::int64_t session_ = 0, estimate_ = 0;
+  std::vector<calib::Wanted> schedule_;
+  calib::CheckSamples samples_;  // all but what is seen now
+  calib::CodeNoise noise_;
+  std::vector<calib::LinearityTable> linearity_;
+  std::vector<double> own_noise_;  // M: variance of a channel's read noise over the median one's, >= 1
+};
+
+}  // namespace compueye::firmware

@@ -1,0 +1,152 @@
+// A calibrated eye is looked at again: as it was, and with what happens to eyes.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "firmware/calibration/calibration_run.hpp"
+#include "firmware/calibration/eye_check.hpp"
+#include "firmware/calibration/session_estimate.hpp"
+#include "firmware/calibration/simulated_bench.hpp"
+#include "tests/firmware/temporary_folder.hpp"
+#include "tests/hal/error_check.hpp"
+#include "tests/source_folder.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+bool go_on(const calib::SessionProgress&) {
+  return true;
+}
+
+/// An eye whose light over the dark is changed on its way.
+class ChangedEye final : public hal::SampleSource {
+ public:
+  ChangedEye(hal::SampleSource& eye, double dark_lsb, std::function<double(std::size_t)> factor)
+      : eye_(eye), dark_lsb_(dark_lsb), factor_(std::move(factor)) {}
+
+ private:
+  const hal::SourceDescription& do_describe() const noexcept override { return eye_.describe(); }
+  hal::Result<void> do_start() override { return eye_.start(); }
+  hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override {
+    auto block = eye_.read(deadline_ns);
+    if (!block) return block;
+    codes_.assign(block->codes.begin(), block->codes.end());
+    for (std::size_t m = 0; m < codes_.size(); ++m) {
+      codes_[m] = static_cast<std::int32_t>(std::lround(dark_lsb_ + factor_(m) * (codes_[m] - dark_lsb_)));
+    }
+    block->codes = codes_;
+    return block;
+  }
+  void do_stop() noexcept override { eye_.stop(); }
+  hal::FrameAccount do_account() const noexcept override { return eye_.account(); }
+
+  hal::SampleSource& eye_;
+  double dark_lsb_;
+  std::function<double(std::size_t)> factor_;
+  std::vector<std::int32_t> codes_;
+};
+
+/// A session of a built eye, once for all tests, and looks at it later.
+class Calibrated {
+ public:
+  Calibrated() {
+    board_.sensor.bits = 12;
+    board_.sensor.full_scale = 64.0;
+    CalibrationRequest request;
+    request.plan.warm_up_s = 0.5;
+    request.plan.patterns = 32;
+    request.plan.dark_frames = request.plan.black_frames = request.plan.flat_frames = 32;
+    request.plan.ramp_steps = 0;
+    request.plan.settle_ms = 60.0;
+    request.distance_mm = board_.object.distance_mm;
+    const SimulatedBench bench = SimulatedBench::create(board_, plain_display(board_), 1).value();
+    const std::int64_t id = run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file_, go_on).value();
+    CHECK(estimate_session(file_, file_.sessions().value().front(), {exposure_s(), unit_lsb(), "test", 0, 1}));
+    CHECK(id == 1);
+  }
+
+  [[nodiscard]] double exposure_s() const { return 1.0 / board_.source.frame_rate_hz; }
+  [[nodiscard]] double unit_lsb() const { return 1.0 / board_.sensor.lsb(); }
+  [[nodiscard]] EyeCheck check() const {
+    return EyeCheck::create(file_, board_.object.distance_mm, exposure_s(), unit_lsb()).value();
+  }
+  [[nodiscard]] const calib::EyeFile& file() const { return file_; }
+  [[nodiscard]] const Board& board() const { return board_; }
+
+  [[nodiscard]] calib::EyeChange look(
+      const sim::Scene& display, std::uint64_t seed,
+      const std::function<double(std::size_t)>& factor = [](std::size_t) { return 1.0; }) const {
+    const EyeCheck check = this->check();
+    const SimulatedBench bench = SimulatedBench::create(board_, display, seed).value();
+    ChangedEye eye(*bench.eye, board_.sensor.dark_level_lsb, factor);
+    const auto captures =
+        take_captures(check.plan(), check.schedule(), {eye, *bench.display, *bench.clock}, go_on).value();
+    return check.judge(captures).value();
+  }
+
+ private:
+  Board board_ = load_board(test::source_path("boards/sim-8x8-built")).value();
+  test::TemporaryFolder folder_;
+  calib::EyeFile file_ =
+      calib::EyeFile::create((folder_.path() / "a.eye").string(), {board_.source.serial, board_.eye, board_.object})
+          .value();
+};
+
+const Calibrated& calibrated() {
+  static const Calibrated once;
+  return once;
+}
+
+}  // namespace
+
+TEST_CASE("an eye that is as it was is found so, whatever its noise") {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const calib::EyeChange change = calibrated().look(plain_display(calibrated().board()), seed);
+    CAPTURE(seed);
+    CAPTURE(change.gain.chance);
+    CAPTURE(change.turn_chance);
+    CAPTURE(change.rest_chi2);
+    CAPTURE(change.channels.size());
+    CHECK_FALSE(change.changed());
+  }
+}
+
+TEST_CASE("a light that is .2 % weaker, a dirty ommatidium and a turned eye are found, and told apart") {
+  const sim::Scene display = plain_display(calibrated().board());
+  const calib::EyeChange dimmed = calibrated().look(display, 2, [](std::size_t) { return 0.998; });
+  CHECK(dimmed.gain_changed);
+  CHECK(dimmed.gain.value == doctest::Approx(-0.002).epsilon(0.3));
+  CHECK_FALSE(dimmed.turned);
+  CHECK(dimmed.channels.empty());
+
+  const calib::EyeChange dirty = calibrated().look(display, 3, [](std::size_t m) { return m == 27 ? 0.95 : 1.0; });
+  CHECK_FALSE(dirty.gain_changed);
+  REQUIRE(dirty.channels.size() == 1);
+  CHECK(dirty.channels.front().channel == 27);
+  CHECK(dirty.channels.front().change.value == doctest::Approx(-0.05).epsilon(0.1));
+
+  // The eye shakes its head by .05 degrees: the display goes the other way, about the centre of the dome.
+  sim::Scene turned = display;
+  const double z = calibrated().board().object.z_mm(calibrated().board().eye);
+  turned.surfaces.front().pose.centre_mm.x -= z * std::sin(0.05 * degree);
+  const calib::EyeChange shaken = calibrated().look(turned, 4);
+  CHECK(shaken.turned);
+  CHECK(shaken.turn_rad[1] == doctest::Approx(0.05 * degree).epsilon(0.3));
+  CHECK(shaken.channels.size() <= 2);
+}
+
+TEST_CASE("a check needs a session at its distance, and its own captures") {
+  test::check_error(EyeCheck::create(calibrated().file(), 50.0, 0.01, 64.0), hal::ErrorCode::not_found,
+                    calibrated().file().path(), {"50"});
+  test::check_error(calibrated().check().judge({}), hal::ErrorCode::mismatch, "check", {"0", "5"});
+}
