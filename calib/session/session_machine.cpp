@@ -244,9 +244,8 @@ Result<void> SessionMachine::pass_over(std::int64_t waited_ns) {
   constexpr int most_at_hand = 100;
   if (++passed_over_ < most_at_hand || waited_ns < moment_ns) return {};
   return fail(ErrorCode::mismatch, "device time",
-              "falls behind by more than a " + std::to_string(FrameTime::most_drift) +
-                  "th of this machine's, so that frames cannot be told from those before a change of light: see to the "
-                  "clock of the eye's firmware");
+              "falls behind this machine's so fast that frames cannot be told from those before a change of light: see "
+              "to the clock of the eye's firmware");
 }
 
 Result<void> SessionMachine::saw(const hal::SampleBlock& block, std::int64_t now_ns) {
