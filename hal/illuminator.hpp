@@ -27,6 +27,10 @@ class Illuminator {
   /// Shows rows x cols linear intensities 0..1 (row-major); returns the time after which samples see it whole.
   [[nodiscard]] virtual Result<std::int64_t> show(std::span<const float> intensities) = 0;
 
+  /// To be called between frames: whoever shows a picture for long has to look after it meanwhile. Error disconnected:
+  /// the light is gone, or no longer what show() made of it.
+  [[nodiscard]] virtual Result<void> attend() { return {}; }
+
   /// No light at all (lamp off), darker than a black picture.
   [[nodiscard]] virtual Result<std::int64_t> off() = 0;
 };

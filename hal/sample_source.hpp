@@ -56,6 +56,9 @@ class SampleSource {
   /// this ends by itself, in a time that the source bounds: with a frame, or with a read() that says `disconnected`.
   [[nodiscard]] bool recovering() const noexcept { return do_recovering(); }
 
+  /// How often it lost its device or its stream since the last start(); for the thread that reads.
+  [[nodiscard]] std::uint64_t outages() const noexcept { return do_outages(); }
+
   /// How many things went wrong so far, faults_in(counters()); from any thread, and as of the last read().
   [[nodiscard]] std::uint64_t faults() const noexcept { return do_faults(); }
 
@@ -70,6 +73,7 @@ class SampleSource {
   virtual void do_stop() noexcept = 0;
   [[nodiscard]] virtual FrameAccount do_account() const noexcept = 0;
   [[nodiscard]] virtual bool do_recovering() const noexcept { return false; }
+  [[nodiscard]] virtual std::uint64_t do_outages() const noexcept { return 0; }
   [[nodiscard]] virtual std::uint64_t do_faults() const noexcept { return 0; }
   [[nodiscard]] virtual std::vector<Counter> do_counters() const { return {}; }
 

@@ -15,6 +15,8 @@ std::string_view name(Rejection reason) noexcept {
       return "saturated";
     case Rejection::configuration:
       return "other configuration";
+    case Rejection::recovered:
+      return "eye or stream lost";
   }
   return "";
 }

@@ -13,8 +13,8 @@
 namespace compueye::calib {
 
 /// Why frames were not taken.
-enum class Rejection { gap, overrun, saturated, configuration };
-inline constexpr std::size_t rejections = 4;
+enum class Rejection { gap, overrun, saturated, configuration, recovered };
+inline constexpr std::size_t rejections = 5;
 
 [[nodiscard]] std::string_view name(Rejection reason) noexcept;
 
@@ -30,6 +30,8 @@ class CaptureBuilder {
   /// A frame of the light that is wanted. True: the capture is whole.
   [[nodiscard]] bool add(const hal::SampleBlock& block);
   [[nodiscard]] const Capture& capture() const noexcept { return capture_; }
+  /// The source lost its device or its stream and has it back: nothing of before counts.
+  void recovered() { reject(Rejection::recovered); }
 
   /// Frames that were not taken, and captures that were begun again for them, since the first.
   [[nodiscard]] std::uint64_t rejected(Rejection reason) const noexcept {

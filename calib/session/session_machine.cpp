@@ -84,7 +84,7 @@ SessionMachine::SessionMachine(const SessionPlan& plan, const SessionEye& eye, s
       resumed_(resumed),
       builder_(eye.channels, eye.configuration, saturated_code(plan, eye.bits),
                static_cast<int>(plan.saturated_channels * eye.channels)),
-      began_ns_(now_ns),
+      warm_ns_(now_ns + static_cast<std::int64_t>(plan.warm_up_s * 1e9)),
       position_(resumed.captures) {
   begin(Phase::warm_up);
 }
@@ -127,6 +127,7 @@ void SessionMachine::want_capture(std::int64_t now_ns) {
 void SessionMachine::lit(std::int64_t now_ns, std::int64_t stable_ns) noexcept {
   lit_ns_ = now_ns;
   stable_ns_ = stable_ns;
+  passed_over_ = 0;
   need_ = Need::frame;
   watch_.emplace(now_ns, std::max<std::int64_t>(static_cast<std::int64_t>(plan_.settle_ms * 1e6), stable_ns - now_ns));
 }
@@ -201,6 +202,7 @@ Result<void> SessionMachine::taken_too_often() const {
       return fail(ErrorCode::mismatch, place, begun + "its settings changed meanwhile: leave it alone, and resume");
     case Rejection::gap:
     case Rejection::overrun:
+    case Rejection::recovered:
       return fail(ErrorCode::io, place, begun + "see to the cable and the load of this machine, and resume");
   }
   return {};
@@ -236,14 +238,26 @@ Result<void> SessionMachine::saw_capture(const hal::SampleBlock& block, std::int
   }
 }
 
+/// Frames of before are read within a moment, unless the two clocks part so fast that every frame seems to be one.
+Result<void> SessionMachine::pass_over(std::int64_t waited_ns) {
+  constexpr std::int64_t moment_ns = 10'000'000'000;
+  constexpr int most_at_hand = 100;
+  if (++passed_over_ < most_at_hand || waited_ns < moment_ns) return {};
+  return fail(ErrorCode::mismatch, "device time",
+              "falls behind by more than a " + std::to_string(FrameTime::most_drift) +
+                  "th of this machine's, so that frames cannot be told from those before a change of light: see to the "
+                  "clock of the eye's firmware");
+}
+
 Result<void> SessionMachine::saw(const hal::SampleBlock& block, std::int64_t now_ns) {
   const std::int64_t begun_ns = frame_time_.begun_ns(block.t_ns, block.flags.time_ok, now_ns);
   if (phase_ == Phase::warm_up) {
-    if (now_ns - began_ns_ >= static_cast<std::int64_t>(plan_.warm_up_s * 1e9)) begin(Phase::falling);
+    if (now_ns >= warm_ns_) begin(Phase::falling);
     return {};
   }
   if (phase_ == Phase::falling || phase_ == Phase::rising) return saw_settling(begun_ns, block);
-  if (begun_ns < std::max(stable_ns_, lit_ns_ + settle_ns_)) return {};
+  const std::int64_t settled_ns = std::max(stable_ns_, lit_ns_ + settle_ns_);
+  if (begun_ns < settled_ns) return pass_over(now_ns - settled_ns);
   return saw_capture(block, now_ns);
 }
 
@@ -257,6 +271,19 @@ void SessionMachine::committed(std::int64_t now_ns) noexcept {
     return;
   }
   want_capture(now_ns);
+}
+
+Result<void> SessionMachine::recovered(std::int64_t now_ns) {
+  if (need_ == Need::commit || need_ == Need::nothing) return {};  // what was taken is taken
+  if (phase_ == Phase::warm_up || phase_ == Phase::falling || phase_ == Phase::rising) {
+    // A change of light that was not seen tells no time, so that both are made again, from a white that has settled.
+    warm_ns_ = std::max(warm_ns_, now_ns + static_cast<std::int64_t>(plan_.settle_ms * 1e6));
+    begin(Phase::warm_up);
+    return {};
+  }
+  builder_.recovered();
+  need_ = Need::light;
+  return builder_.retakes() <= plan_.most_retakes ? Result<void>() : taken_too_often();
 }
 
 SessionProgress SessionMachine::progress(std::int64_t now_ns) const {

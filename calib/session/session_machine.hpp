@@ -67,10 +67,14 @@ class SessionMachine {
   /// The light was changed at `now_ns`; whoever shows it says that it is stable from `stable_ns` on.
   void lit(std::int64_t now_ns, std::int64_t stable_ns) noexcept;
   /// Errors, at which the session ends and may be resumed: out_of_range (too much light, too little, or none that
-  /// settles: the sentence says what to change), mismatch (after a resume the reference has changed); and where a
+  /// settles: the sentence says what to change), mismatch (after a resume the reference has changed; the device's time
+  /// falls behind too fast); and where a
   /// capture was taken again too often, io, or one of these.
   [[nodiscard]] hal::Result<void> saw(const hal::SampleBlock& block, std::int64_t now_ns);
   void committed(std::int64_t now_ns) noexcept;
+  /// The source lost its device or its stream, and has it back or is getting it back: the light is shown anew, since a
+  /// lamp of the device went out meanwhile, and what was being taken begins again. Errors: as of saw().
+  [[nodiscard]] hal::Result<void> recovered(std::int64_t now_ns);
 
  private:
   enum class Phase { warm_up, falling, rising, level_dark, level_white, resume, captures };
@@ -82,6 +86,7 @@ class SessionMachine {
   void want_capture(std::int64_t now_ns);
   [[nodiscard]] hal::Result<void> saw_settling(std::int64_t begun_ns, const hal::SampleBlock& block);
   [[nodiscard]] hal::Result<void> saw_capture(const hal::SampleBlock& block, std::int64_t now_ns);
+  [[nodiscard]] hal::Result<void> pass_over(std::int64_t waited_ns);
   [[nodiscard]] hal::Result<void> taken_too_often() const;
   [[nodiscard]] hal::Result<void> check_level() const;
   [[nodiscard]] hal::Result<void> check_reference() const;
@@ -98,9 +103,10 @@ class SessionMachine {
   FrameTime frame_time_;
   std::optional<SettleWatch> watch_;
   Capture dark_, white_;  // of the check of the level
-  std::int64_t began_ns_ = 0, captures_began_ns_ = 0;
+  std::int64_t warm_ns_ = 0, captures_began_ns_ = 0;
   std::int64_t lit_ns_ = 0, stable_ns_ = 0, settle_ns_ = 0;
   std::int64_t position_ = 0;
+  int passed_over_ = 0;  // frames since lit()
   double signal_lsb_ = 0.0;
 };
 

@@ -49,6 +49,12 @@ hal::Result<void> DeviceRequests::set_configuration(const protocol::Configuratio
   return request(Request::set_config, bytes, {}, until_ns).map([](std::size_t) {});
 }
 
+hal::Result<void> DeviceRequests::set_illumination(const protocol::Illumination& wanted, std::int64_t until_ns) {
+  std::array<std::byte, protocol::Illumination::bytes> bytes{};
+  protocol::store(wanted, bytes);
+  return request(Request::set_illum, bytes, {}, until_ns).map([](std::size_t) {});
+}
+
 hal::Result<void> DeviceRequests::check_configuration(const protocol::Configuration& wanted, std::string_view serial,
                                                       std::int64_t until_ns) {
   std::array<std::byte, protocol::Configuration::bytes> echo{};

@@ -31,6 +31,7 @@ class DeviceRequests {
   /// Fetches the next page. Errors besides: unsupported (another protocol version).
   [[nodiscard]] hal::Result<void> page(protocol::DescriptorPages& pages, std::int64_t until_ns);
   [[nodiscard]] hal::Result<void> set_configuration(const protocol::Configuration& wanted, std::int64_t until_ns);
+  [[nodiscard]] hal::Result<void> set_illumination(const protocol::Illumination& wanted, std::int64_t until_ns);
   /// Errors besides: mismatch (another configuration came back). `serial`: for errors.
   [[nodiscard]] hal::Result<void> check_configuration(const protocol::Configuration& wanted, std::string_view serial,
                                                       std::int64_t until_ns);

@@ -71,6 +71,22 @@ DeviceSource::~DeviceSource() {
   transport_->close();
 }
 
+hal::Result<void> DeviceSource::set_exposure(std::int64_t exposure_ns) {
+  if (started()) return hal::fail(hal::ErrorCode::usage, serial_, "exposure cannot be set while frames come");
+  DeviceSettings wanted = settings_;
+  wanted.exposure_ns = exposure_ns;
+  TRY(check_settings(wanted));
+  const auto configuration = TRY(configuration_for(wanted, *descriptor_));
+  configuration_.exposure_ns = configuration.exposure_ns;
+  settings_.exposure_ns = exposure_ns;
+  return {};
+}
+
+hal::Result<void> DeviceSource::set_illumination(const protocol::Illumination& wanted) {
+  if (!transport_open_) return hal::fail(hal::ErrorCode::disconnected, serial_, "is not there to be lit");
+  return requests_.set_illumination(wanted, clock_.now_ns() + protocol::control_deadline_ns);
+}
+
 hal::Result<void> DeviceSource::do_start() {
   failures_ = {};
   reader_->begin_run();

@@ -58,6 +58,13 @@ class DeviceSource final : public hal::SampleSource {
   DeviceSource& operator=(const DeviceSource&) = delete;
   ~DeviceSource() override;
 
+  /// For the runs from the next start() on; 0: as long as device and rate allow. Errors: usage (it is started),
+  /// out_of_range.
+  [[nodiscard]] hal::Result<void> set_exposure(std::int64_t exposure_ns);
+  /// SET_ILLUM, now; a device that starts anew forgets it. For the thread that reads. Errors: disconnected (or it is
+  /// being got back: read() does that), timeout, io (refused).
+  [[nodiscard]] hal::Result<void> set_illumination(const protocol::Illumination& wanted);
+
   /// counters(), by what they are.
   [[nodiscard]] FailureCounters failures() const noexcept;
   [[nodiscard]] MachineState state() const noexcept { return machine_.state(); }
@@ -75,6 +82,7 @@ class DeviceSource final : public hal::SampleSource {
   void do_stop() noexcept override;
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override;
   [[nodiscard]] bool do_recovering() const noexcept override { return recovering_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t do_outages() const noexcept override { return failures_[Failure::restart]; }
   [[nodiscard]] std::uint64_t do_faults() const noexcept override { return faults_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::vector<hal::Counter> do_counters() const override { return failures().counters(); }
   [[nodiscard]] hal::Result<hal::SampleBlock> read_or_recover(std::int64_t deadline_ns);

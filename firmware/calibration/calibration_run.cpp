@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "firmware/calibration/plan_file.hpp"
+#include "firmware/calibration/watched_eye.hpp"
+#include "firmware/eye/settings/board_lines.hpp"
+#include "firmware/text/number_text.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -19,8 +24,6 @@ using calib::SessionMachine;
 using hal::ErrorCode;
 using hal::fail;
 using hal::Result;
-
-constexpr std::int64_t no_frame_ns = 10'000'000'000, wait_ns = 200'000'000;
 
 /// A session in the file, and how far it is.
 struct Begun {
@@ -35,7 +38,7 @@ Result<std::optional<calib::StoredSession>> cut_off(const EyeFile& file) {
   return std::optional<calib::StoredSession>();
 }
 
-/// The same eye, in the same state, for the same plan.
+/// The same eye, in the same state, for the same plan. An eye's config_id names its stream, and is another every time.
 Result<void> check_same(const calib::Session& was, const calib::Session& is, const std::string& file) {
   const auto refuse = [&](std::string_view what, std::string_view before, std::string_view now) {
     return fail(ErrorCode::mismatch, file,
@@ -45,9 +48,6 @@ Result<void> check_same(const calib::Session& was, const calib::Session& is, con
   if (was.serial != is.serial) return refuse("serial", was.serial, is.serial);
   if (was.firmware != is.firmware) return refuse("firmware", was.firmware, is.firmware);
   if (was.configuration != is.configuration) return refuse("configuration", was.configuration, is.configuration);
-  if (was.config_id != is.config_id) {
-    return refuse("device configuration", std::to_string(was.config_id), std::to_string(is.config_id));
-  }
   if (was.distance_mm != is.distance_mm) {
     return refuse("distance", fmt::format("{} mm", was.distance_mm), fmt::format("{} mm", is.distance_mm));
   }
@@ -68,15 +68,16 @@ Result<calib::Resumed> captures_of(const EyeFile& file, std::int64_t session) {
   return done;
 }
 
-Result<Begun> begin(const CalibrationRequest& request, const calib::Session& session, EyeFile& file) {
+Result<void> check_begun(const CalibrationRequest& request, const EyeFile& file) {
+  const bool begun = TRY(cut_off(file)).has_value();
+  if (begun == request.resume) return {};
+  return fail(ErrorCode::usage, file.path(),
+              begun ? "holds a session that was cut off: go on with it by --resume, or begin another file"
+                    : "holds no session that was cut off: leave out --resume");
+}
+
+Result<Begun> begin(const calib::Session& session, EyeFile& file) {
   const auto before = TRY(cut_off(file));
-  if (before && !request.resume) {
-    return fail(ErrorCode::usage, file.path(),
-                "holds a session that was cut off: go on with it by --resume, or begin another file");
-  }
-  if (!before && request.resume) {
-    return fail(ErrorCode::usage, file.path(), "holds no session that was cut off: leave out --resume");
-  }
   if (!before) return Begun{TRY(file.begin_session(session)), {}};
   TRY(check_same(before->begun, session, file.path()));
   return Begun{before->id, TRY(captures_of(file, before->id))};
@@ -91,22 +92,22 @@ Result<void> show(const CalibrationBench& bench, const calib::Wanted& wanted, Se
   return {};
 }
 
-/// The next frame, however long the source takes to get its device back, which it bounds itself.
-Result<hal::SampleBlock> next_frame(const CalibrationBench& bench, const std::function<bool()>& go_on) {
-  const std::int64_t begun_ns = bench.clock.now_ns();
-  for (;;) {
-    auto block = bench.eye.read(bench.clock.now_ns() + wait_ns);
-    if (block || block.error().code != ErrorCode::timeout) return block;
-    if (!go_on()) return fail(ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
-    if (bench.eye.recovering() || bench.clock.now_ns() - begun_ns < no_frame_ns) continue;
-    return fail(ErrorCode::timeout, bench.eye.describe().serial,
-                "gave no frame for 10 s: see to its cable, and go on with --resume");
-  }
+Result<void> look(const CalibrationBench& bench, WatchedEye& eye, SessionMachine& machine,
+                  const std::function<bool()>& go_on) {
+  // Also while no frame comes: a window that nobody looks after is covered by a question about it.
+  Result<void> attended;
+  const auto look_after_both = [&] { return (attended = bench.light.attend()).has_value() && go_on(); };
+  const auto seen = eye.next(look_after_both);
+  TRY(attended);
+  const hal::SampleBlock block = TRY(seen);
+  TRY(bench.light.attend());
+  TRY(eye.was_lost() ? machine.recovered(bench.clock.now_ns()) : machine.saw(block, bench.clock.now_ns()));
+  return go_on() ? Result<void>() : fail(ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
 }
 
 using Keep = std::function<Result<void>(const calib::Capture&)>;
 
-Result<void> take(const CalibrationBench& bench, SessionMachine& machine, const Keep& keep,
+Result<void> take(const CalibrationBench& bench, WatchedEye& eye, SessionMachine& machine, const Keep& keep,
                   const CalibrationWatch& watch) {
   const auto go_on = [&] { return watch(machine.progress(bench.clock.now_ns())); };
   while (machine.need() != Need::nothing) {
@@ -114,16 +115,16 @@ Result<void> take(const CalibrationBench& bench, SessionMachine& machine, const 
       case Need::light:
         TRY(show(bench, machine.wanted(), machine));
         break;
-      case Need::frame: {
-        const hal::SampleBlock block = TRY(next_frame(bench, go_on));
-        TRY(machine.saw(block, bench.clock.now_ns()));
-        if (!go_on()) return fail(ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
+      case Need::frame:
+        TRY(look(bench, eye, machine, go_on));
         break;
-      }
-      case Need::commit:
-        TRY(keep(machine.capture()));
+      case Need::commit: {
+        calib::Capture capture = machine.capture();
+        if (bench.exposure != nullptr) capture.exposure_s = static_cast<double>(bench.exposure->now_ns) * 1e-9;
+        TRY(keep(capture));
         machine.committed(bench.clock.now_ns());
         break;
+      }
       case Need::nothing:
         break;
     }
@@ -131,13 +132,30 @@ Result<void> take(const CalibrationBench& bench, SessionMachine& machine, const 
   return {};
 }
 
-calib::Session session_of(const CalibrationRequest& request, const hal::SourceDescription& eye,
-                          std::uint32_t config_id) {
+/// That of the session that goes on, or the one that this light asks for.
+Result<void> set_exposure(const CalibrationRequest& request, const CalibrationBench& bench, const EyeFile& file,
+                          const CalibrationWatch& watch) {
+  if (bench.exposure == nullptr) return {};
+  const auto go_on = [&] { return watch({}); };
+  if (!request.resume) {
+    return choose_exposure(*bench.exposure, request.plan, bench.eye, bench.light, bench.clock, go_on);
+  }
+  const auto before = TRY(cut_off(file));
+  const auto text = before ? value_in(before->begun.configuration, exposure_key) : std::nullopt;
+  const auto exposure_ns = text ? typed_number(*text) : std::nullopt;
+  return exposure_ns ? bench.exposure->change(std::llround(*exposure_ns)) : Result<void>();
+}
+
+calib::Session session_of(const CalibrationRequest& request, const CalibrationBench& bench, std::uint32_t config_id) {
+  const hal::SourceDescription& eye = bench.eye.describe();
   calib::Session session;
   session.serial = eye.serial;
   session.firmware = eye.firmware;
   session.config_id = config_id;
   session.configuration = request.configuration;
+  if (bench.exposure != nullptr) {
+    session.configuration += fmt::format("{} = {}\n", exposure_key, bench.exposure->now_ns);
+  }
   session.pattern_generator = "compueye patterns 1";
   session.seed = request.plan.seed;
   session.plan = text_of(request.plan);
@@ -152,21 +170,25 @@ calib::Session session_of(const CalibrationRequest& request, const hal::SourceDe
 
 Result<std::int64_t> run_calibration(const CalibrationRequest& request, const CalibrationBench& bench, EyeFile& file,
                                      const CalibrationWatch& watch) {
-  const hal::SourceDescription eye = bench.eye.describe();
+  const hal::SourceDescription described = bench.eye.describe();
   const hal::IlluminatorDescription& display = bench.light.describe();
+  TRY(check_begun(request, file));
+  TRY(set_exposure(request, bench, file, watch));
   TRY(bench.eye.start());
+  WatchedEye eye(bench.eye, bench.clock);
   const auto ended = [&]() -> Result<std::int64_t> {
-    const std::uint32_t config_id = TRY(next_frame(bench, [&] { return watch({}); })).config_id;
+    const std::uint32_t config_id = TRY(eye.next([&] { return watch({}); })).config_id;
+    const calib::SessionEye seen{described.channels, described.bits, config_id};
     // Made before the file is touched: a plan that cannot be carried out leaves no session.
-    TRY(SessionMachine::create(request.plan, {eye.channels, eye.bits, config_id}, display.rows, display.cols, {}, 0));
-    const Begun begun = TRY(begin(request, session_of(request, eye, config_id), file));
-    auto machine = TRY(SessionMachine::create(request.plan, {eye.channels, eye.bits, config_id}, display.rows,
-                                              display.cols, begun.done, bench.clock.now_ns()));
+    TRY(SessionMachine::create(request.plan, seen, display.rows, display.cols, {}, 0));
+    const Begun begun = TRY(begin(session_of(request, bench, config_id), file));
+    auto machine =
+        TRY(SessionMachine::create(request.plan, seen, display.rows, display.cols, begun.done, bench.clock.now_ns()));
     const auto keep = [&](const calib::Capture& capture) -> Result<void> {
       TRY(file.append_capture(begun.id, capture));
       return {};
     };
-    TRY(take(bench, machine, keep, watch));
+    TRY(take(bench, eye, machine, keep, watch));
     TRY(file.end_session(begun.id));
     return begun.id;
   }();
@@ -177,18 +199,19 @@ Result<std::int64_t> run_calibration(const CalibrationRequest& request, const Ca
 Result<std::vector<calib::Capture>> take_captures(const calib::SessionPlan& plan,
                                                   const std::vector<calib::Wanted>& schedule,
                                                   const CalibrationBench& bench, const CalibrationWatch& watch) {
-  const hal::SourceDescription eye = bench.eye.describe();
+  const hal::SourceDescription described = bench.eye.describe();
   TRY(bench.eye.start());
+  WatchedEye eye(bench.eye, bench.clock);
   const auto ended = [&]() -> Result<std::vector<calib::Capture>> {
-    const std::uint32_t config_id = TRY(next_frame(bench, [&] { return watch({}); })).config_id;
-    auto machine =
-        TRY(SessionMachine::create(plan, {eye.channels, eye.bits, config_id}, schedule, {}, bench.clock.now_ns()));
+    const std::uint32_t config_id = TRY(eye.next([&] { return watch({}); })).config_id;
+    auto machine = TRY(SessionMachine::create(plan, {described.channels, described.bits, config_id}, schedule, {},
+                                              bench.clock.now_ns()));
     std::vector<calib::Capture> taken;
     const auto keep = [&](const calib::Capture& capture) {
       taken.push_back(capture);
       return Result<void>();
     };
-    TRY(take(bench, machine, keep, watch));
+    TRY(take(bench, eye, machine, keep, watch));
     return taken;
   }();
   bench.eye.stop();

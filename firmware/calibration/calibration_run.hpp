@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/eye_file/eye_file.hpp"
 #include "calib/session/session_machine.hpp"
+#include "firmware/calibration/exposure_choice.hpp"
 #include "hal/clock.hpp"
 #include "hal/illuminator.hpp"
 #include "hal/sample_source.hpp"
@@ -17,14 +19,18 @@ namespace compueye::firmware {
 struct CalibrationBench {
   hal::SampleSource& eye;
   hal::Illuminator& light;
-  hal::Clock& clock;  ///< that of both
+  hal::Clock& clock;                    ///< that of both
+  ExposureControl* exposure = nullptr;  ///< where the eye allows it
 };
+
+/// Of the line that a session's configuration has where the exposure can be set.
+inline constexpr std::string_view exposure_key = "exposure_ns";
 
 struct CalibrationRequest {
   calib::SessionPlan plan;
   bool resume = false;
   double distance_mm = 0.0;   ///< of the light, from the lens tip
-  std::string configuration;  ///< of eye and board, in words or as a hash: what must not change within a session
+  std::string configuration;  ///< of eye and board, lines "key = value": what must not change within a session
   std::string program;        ///< name and version
   std::int64_t now_unix_s = 0;
 };
@@ -33,7 +39,8 @@ struct CalibrationRequest {
 using CalibrationWatch = std::function<bool(const calib::SessionProgress&)>;
 
 /// Takes a session's captures into an eye file, each on the disk before the next picture shows, and ends the session.
-/// Its id. The channels are the ommatidia in order.
+/// Its id. Captures are in the order of ommatidia. A new session chooses its exposure, where that can be set; one that
+/// goes on has that of before. An eye that is lost and found is shown its light anew.
 ///
 /// Whatever ends it, the captures that were taken stay, and `resume` goes on after the last. Errors: those of
 /// SessionMachine, of the eye, the light and the file; usage (the file holds a session that was cut off and is not to

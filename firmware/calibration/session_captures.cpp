@@ -69,6 +69,9 @@ class Sorter {
 
   Result<void> add(Stage stage, const Capture& capture) {
     const double time = time_.of(capture);
+    if (capture.exposure_s) {
+      for (calib::LightSeries& series : into_.series) series.exposure_s = *capture.exposure_s;
+    }
     calib::Captures& c = into_.captures;
     switch (stage) {
       case Stage::dark:

@@ -190,6 +190,19 @@ Result<MeasuredRows> measured_rows(const Board& board) {
   return load(file, TRY(newest_of(file, board.object.distance_mm)));
 }
 
+Result<std::optional<double>> measured_exposure_s(const Board& board) {
+  const std::optional<double> unknown;
+  if (board.eye_file.empty()) return unknown;
+  const auto file = TRY(calib::EyeFile::open(board.eye_path(), calib::EyeFileMode::read));
+  TRY(check_is_of(file, board));
+  const auto stored = TRY(newest_of(file, board.object.distance_mm));
+  const calib::Estimate estimate = TRY(file.load_estimate(stored.id));
+  if (estimate.sessions.empty()) return unknown;
+  auto captures = TRY(file.captures(estimate.sessions.front()));
+  const auto first = TRY(captures.next());
+  return first ? first->exposure_s : unknown;
+}
+
 Result<MeasuredRows> newest_rows(const std::string& path, std::optional<double> distance_mm) {
   const auto file = TRY(calib::EyeFile::open(path, calib::EyeFileMode::read));
   return load(file, TRY(newest_of(file, distance_mm)));

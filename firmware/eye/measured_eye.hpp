@@ -58,6 +58,10 @@ inline constexpr double same_distance_mm = 0.01;
 /// The newest estimate of a file, at that distance where one is given. Errors: as above.
 [[nodiscard]] hal::Result<MeasuredRows> newest_rows(const std::string& file, std::optional<double> distance_mm);
 
+/// Of a frame of the session that those rows are of: what other frames have to be exposed like. Nothing: the session
+/// did not choose it, or the board has no eye file. Errors: as of measured_rows().
+[[nodiscard]] hal::Result<std::optional<double>> measured_exposure_s(const Board& board);
+
 /// By how much a sample may differ from what the response makes of the right picture: its noise, and the errors of its
 /// row. Whether samples are explained is asked with this; lambda is not chosen by it: pictures are darker than the one
 /// of row_sigma, and came out up to three times worse.

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "drivers/device/device_source.hpp"
 #include "drivers/transport/hid_hidapi.hpp"
 #include "drivers/transport/usb_libusb.hpp"
+#include "firmware/eye/measured_eye.hpp"
 #include "firmware/eye/planned_eye.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/eye/source_kinds.hpp"
@@ -34,14 +36,18 @@ hal::Result<Source> simulated(const Board& board, EyeWanted wanted, hal::Clock& 
   return TRY(planned_eye(board, std::move(settings), clock, wanted.progress));
 }
 
-hal::Result<Source> attached(const Board& board, const protocol::Bus& bus, hal::Clock& clock) {
-  device::DeviceSettings settings;
-  settings.bus = &bus;
-  settings.serial = board.source.serial;
-  settings.frame_rate_hz = board.source.frame_rate_hz;
-  auto transport = cable_on(bus).connect(settings.serial);
-  Source eye = TRY(device::DeviceSource::create(std::move(settings), std::move(transport), clock));
-  TRY(check_fits(eye->describe(), board, "eye " + eye->describe().serial));
+/// Rows that were measured are of samples of their session's exposure.
+hal::Result<Source> attached(const Board& board, hal::Clock& clock) {
+  const auto exposure_s = TRY(measured_exposure_s(board));
+  if (exposure_s && *exposure_s * board.source.frame_rate_hz > 1.0 + 1e-9) {
+    return hal::fail(
+        hal::ErrorCode::mismatch, board.eye_path(),
+        fmt::format("was measured with frames exposed for {:.4g} ms, which has no room at {:g} Hz; state a "
+                    "rate of at most {:.6g} Hz, or calibrate at this one",
+                    *exposure_s * 1e3, board.source.frame_rate_hz, 1.0 / *exposure_s));
+  }
+  auto eye = TRY(attached_eye(board, clock));
+  if (exposure_s) TRY(eye->set_exposure(std::llround(*exposure_s * 1e9)));
   return eye;
 }
 
@@ -60,15 +66,25 @@ hal::Result<hal::SourceDescription> ask(const transport::Cable& cable, const tra
 }  // namespace
 
 hal::Result<Source> board_source(const Board& board, EyeWanted wanted, hal::Clock& clock) {
-  const protocol::Bus* const bus = bus_of_kind(board.source.kind);
-  if (bus == nullptr) return simulated(board, std::move(wanted), clock);
+  if (board.source.simulated()) return simulated(board, std::move(wanted), clock);
   if (wanted.lossless) {
     return hal::fail(hal::ErrorCode::usage, "--lossless",
                      fmt::format("cannot be asked of the eye of board {}, which waits for nobody; record it and replay "
                                  "the recording",
                                  board.name));
   }
-  return attached(board, *bus, clock);
+  return attached(board, clock);
+}
+
+hal::Result<std::unique_ptr<device::DeviceSource>> attached_eye(const Board& board, hal::Clock& clock) {
+  device::DeviceSettings settings;
+  settings.bus = bus_of_kind(board.source.kind);
+  settings.serial = board.source.serial;
+  settings.frame_rate_hz = board.source.frame_rate_hz;
+  auto transport = cable_on(*settings.bus).connect(settings.serial);
+  auto eye = TRY(device::DeviceSource::create(std::move(settings), std::move(transport), clock));
+  TRY(check_fits(eye->describe(), board, "eye " + eye->describe().serial));
+  return eye;
 }
 
 hal::Result<void> check_fits(const hal::SourceDescription& source, const Board& board, const std::string& place) {

@@ -14,6 +14,10 @@
 #include "recon/problem/progress.hpp"
 #include "sim/scene/scene.hpp"
 
+namespace compueye::device {
+class DeviceSource;
+}
+
 namespace compueye::firmware {
 
 /// What a command asks of a board's eye.
@@ -26,10 +30,15 @@ struct EyeWanted {
 };
 
 /// The eye of a board: simulated, or on a cable and identified: the board's serial, or the first one there is where the
-/// board names none. `clock` must outlive it. Errors: those of planned_eye() and DeviceSource::create();
-/// mismatch (an eye of another number of channels or depth than the board says), usage (--lossless on a cable).
+/// board names none, exposed as it was measured. `clock` must outlive it. Errors: those of planned_eye() and
+/// DeviceSource::create(); mismatch (an eye of another number of channels or depth than the board says), usage
+/// (--lossless on a cable).
 [[nodiscard]] hal::Result<std::unique_ptr<hal::SampleSource>> board_source(const Board& board, EyeWanted wanted,
                                                                            hal::Clock& clock);
+
+/// The eye on a cable of a board whose source is none that is simulated, exposed for as long as its rate allows,
+/// however it was measured. `clock` must outlive it. Errors: as above.
+[[nodiscard]] hal::Result<std::unique_ptr<device::DeviceSource>> attached_eye(const Board& board, hal::Clock& clock);
 
 /// Whether a source is of as many channels and as deep as the board's eye. Error mismatch at `place`.
 [[nodiscard]] hal::Result<void> check_fits(const hal::SourceDescription& source, const Board& board,

@@ -96,25 +96,31 @@ struct Bench {
 
   hal::Result<void> drive(calib::SessionMachine& machine, std::int64_t most_commits = 1'000'000) {
     while (machine.need() != Need::nothing && most_commits > 0) {
-      if (machine.need() == Need::light) {
-        const bool late = hold_up_from >= 0 && machine.progress(0).taken >= hold_up_from;
-        for (int k = 0; k < 4 && late; ++k) {
-          const hal::SampleBlock block = read();
-          held_up.emplace_back(block, codes);
-        }
-        show(machine.wanted());
-        machine.lit(now_ns, now_ns + ms);  // which the light is wrong about
-        if (late) now_ns += 500 * ms;
-        if (auto told = read_late(machine); !told) return told;
-      } else if (machine.need() == Need::frame) {
-        const auto block = read();
-        const auto seen = machine.saw(block, now_ns + way_ns);
-        if (!seen) return seen;
-      } else {
-        stored.push_back(machine.capture());
-        machine.committed(now_ns);
-        --most_commits;
+      if (machine.need() == Need::commit) --most_commits;
+      if (auto done = step(machine); !done) return done;
+    }
+    return {};
+  }
+
+  /// What the machine needs next.
+  hal::Result<void> step(calib::SessionMachine& machine) {
+    if (machine.need() == Need::light) {
+      const bool late = hold_up_from >= 0 && machine.progress(0).taken >= hold_up_from;
+      for (int k = 0; k < 4 && late; ++k) {
+        const hal::SampleBlock block = read();
+        held_up.emplace_back(block, codes);
       }
+      show(machine.wanted());
+      machine.lit(now_ns, now_ns + ms);  // which the light is wrong about
+      if (late) now_ns += 500 * ms;
+      if (auto told = read_late(machine); !told) return told;
+    } else if (machine.need() == Need::frame) {
+      const auto block = read();
+      const auto seen = machine.saw(block, now_ns + way_ns);
+      if (!seen) return seen;
+    } else {
+      stored.push_back(machine.capture());
+      machine.committed(now_ns);
     }
     return {};
   }
@@ -254,6 +260,37 @@ TEST_CASE("what is lost, overrun, saturated or of other settings is taken again,
   }
 }
 
+TEST_CASE("an eye that was lost and found sees its light anew, and what was being taken is taken again") {
+  Bench whole;
+  whole.plan.frames = 3;
+  auto undisturbed = whole.machine();
+  REQUIRE(whole.drive(undisturbed).has_value());
+  // Frames at which it is lost: in the warm-up, while light falls and rises, at the levels, and in captures.
+  for (const std::uint64_t lost_at : {10U, 60U, 70U, 130U, 250U, 900U, 2000U}) {
+    CAPTURE(lost_at);
+    Bench bench;
+    bench.plan.frames = 3;
+    auto machine = bench.machine();
+    while (machine.need() != Need::nothing) {
+      if (machine.need() == Need::frame && bench.frame == lost_at) {
+        // A lamp of the device goes out with it, and no number is missing.
+        bench.shown = bench.before = {};
+        bench.now_ns += 3000 * ms;
+        bench.read();
+        REQUIRE(machine.recovered(bench.now_ns).has_value());
+      }
+      REQUIRE(bench.step(machine).has_value());
+    }
+    CHECK(bench.frame > lost_at);
+    REQUIRE(bench.stored.size() == whole.stored.size());
+    for (std::size_t k = 0; k < whole.stored.size(); ++k) CHECK(bench.stored[k].codes == whole.stored[k].codes);
+    const auto progress = machine.progress(0);
+    CHECK(progress.rejected[static_cast<std::size_t>(calib::Rejection::recovered)] <= 1);
+    CHECK(progress.settle_ms >= 84.0);
+    CHECK(progress.settle_ms <= 108.0);
+  }
+}
+
 TEST_CASE("frames of the light before are told by when they were exposed, however late they are read") {
   Bench whole, late;
   late.hold_up_from = 8;
@@ -321,6 +358,18 @@ TEST_CASE("a device that begins anew is believed about its time no more than bef
   REQUIRE(bench.drive(machine).has_value());
   REQUIRE(bench.stored.size() == whole.stored.size());
   for (std::size_t k = 0; k < whole.stored.size(); ++k) CHECK(bench.stored[k].codes == whole.stored[k].codes);
+}
+
+TEST_CASE("a device whose time falls behind is told so when frames cannot be told apart any more, and not before") {
+  for (const std::int64_t part : {2, 410}) {
+    CAPTURE(part);
+    Bench bench;
+    auto machine = bench.machine();
+    bench.spoil = [&](hal::SampleBlock& block) { block.t_ns -= (bench.now_ns - bench.period_ns) / part; };
+    const auto done = bench.drive(machine);
+    CHECK(done.has_value() == (part == 410));
+    if (!done) test::check_error(done, hal::ErrorCode::mismatch, "device time", {"400th"});
+  }
 }
 
 TEST_CASE("a plan that makes no sense is refused by the name of its setting") {

@@ -20,15 +20,19 @@ namespace compueye::hil {
 class EmulatedCable {
  public:
   explicit EmulatedCable(const protocol::EmulatorSettings& settings)
-      : device_(protocol::DeviceEmulator::create(settings, protocol::tests::shown(settings.descriptor.bits), now_ns_)
-                    .value()) {}
+      : EmulatedCable(settings, protocol::tests::shown(settings.descriptor.bits), 2'000'000) {}
+  /// `most_between_looks_ns`: of the device's time. One that must not be slow, whatever it loses, is given seconds.
+  EmulatedCable(const protocol::EmulatorSettings& settings, protocol::SampleGenerator samples,
+                std::int64_t most_between_looks_ns)
+      : most_between_looks_ns_(most_between_looks_ns),
+        device_(protocol::DeviceEmulator::create(settings, std::move(samples), now_ns_).value()) {}
 
   /// Calls use(device, now_ns) alone.
   template <class Use>
   auto with(Use&& use) {
     const std::lock_guard lock(mutex_);
     const std::int64_t real_ns = clock_.now_ns();
-    now_ns_ += std::min(real_ns - looked_ns_, most_between_looks_ns);
+    now_ns_ += std::min(real_ns - looked_ns_, most_between_looks_ns_);
     looked_ns_ = real_ns;
     return use(device_, now_ns_);
   }
@@ -63,8 +67,7 @@ class EmulatedCable {
   }
 
  private:
-  static constexpr std::int64_t most_between_looks_ns = 2'000'000;
-
+  const std::int64_t most_between_looks_ns_;
   hal::MonotonicClock clock_;
   std::mutex mutex_;
   std::int64_t looked_ns_ = clock_.now_ns();

@@ -31,8 +31,8 @@ constexpr std::array<FolderRule, 27> rules{{
      "drivers/transport: hal, drivers/protocol, and one third-party library a file"},
     {"drivers/device", "hal drivers/protocol drivers/device", none, true, none, false,
      "drivers/device: hal and drivers/protocol; the transport comes in as hal::ByteTransport"},
-    {"drivers/illuminator", "hal drivers/protocol drivers/illuminator", none, true, none, false,
-     "drivers/illuminator: hal and drivers/protocol"},
+    {"drivers/illuminator", "hal drivers/protocol drivers/illuminator", "SDL2", true, none, true,
+     "drivers/illuminator: hal, drivers/protocol, and one third-party library a file"},
     {"drivers/recording", "hal drivers/protocol drivers/recording", none, true, none, false,
      "drivers/recording: hal and drivers/protocol"},
 
@@ -67,9 +67,11 @@ constexpr std::array<FolderRule, 27> rules{{
      "fmt nlohmann-json xxhash", false, none, false,
      "firmware/operating_points: hal, recon, firmware/eye, files, text and pipeline, nlohmann-json, xxhash, fmt"},
     {"firmware/calibration",
-     "hal recon recon/core calib calib/eye_file sim firmware/eye firmware/files firmware/text firmware/calibration",
+     "hal recon recon/core calib calib/eye_file sim drivers/protocol drivers/device drivers/illuminator firmware/eye "
+     "firmware/files firmware/text firmware/calibration",
      "fmt", false, none, false,
-     "firmware/calibration: hal, calib and its eye file, sim, firmware/eye, files and text, fmt"},
+     "firmware/calibration: hal, calib and its eye file, sim, drivers/protocol, device and illuminator, firmware/eye, "
+     "files and text, fmt"},
     {"firmware/app", any, any, true, none, false, "firmware/app wires everything"},
     {"studies",
      "hal recon recon/core calib calib/eye_file sim drivers/protocol drivers/transport drivers/device "
@@ -85,7 +87,7 @@ constexpr std::array<FolderRule, 27> rules{{
     {"tools", none, none, false, none, false, "tools hold scripts; a program is a subcommand of compueye"},
 }};
 
-constexpr std::array<Library, 16> known_libraries{{
+constexpr std::array<Library, 17> known_libraries{{
     {"tl-expected", "tl/expected.hpp", "tl::expected"},
     {"Eigen", "Eigen/ unsupported/Eigen/", "Eigen3::Eigen"},
     {"Spectra", "Spectra/", "Spectra::Spectra"},
@@ -100,6 +102,7 @@ constexpr std::array<Library, 16> known_libraries{{
     {"sqlite", "sqlite3.h", "SQLite::SQLite3 PkgConfig::SQLITE3"},
     {"libusb", "libusb-1.0/ libusb.h", "PkgConfig::LIBUSB"},
     {"hidapi", "hidapi/ hidapi.h", "PkgConfig::HIDAPI"},
+    {"SDL2", "SDL.h SDL2/", "PkgConfig::SDL2"},
     {"umockdev", "umockdev.h", "PkgConfig::UMOCKDEV"},
     {"libgpiod", "gpiod.h gpiod.hpp gpiodcxx/", "PkgConfig::GPIOD"},
 }};

@@ -13,17 +13,22 @@
 #include "calib/eye_file/eye_file.hpp"
 #include "calib/median.hpp"
 #include "firmware/app/command.hpp"
+#include "firmware/calibration/attached_bench.hpp"
 #include "firmware/calibration/calibration_run.hpp"
+#include "firmware/calibration/lights.hpp"
 #include "firmware/calibration/plan_file.hpp"
 #include "firmware/calibration/row_error.hpp"
 #include "firmware/calibration/session_estimate.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/measured_eye.hpp"
 #include "firmware/eye/scene/scene_choice.hpp"
+#include "firmware/eye/settings/board_lines.hpp"
 #include "firmware/eye/settings/setting.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/eye/writable_eye_file.hpp"
 #include "firmware/text/date.hpp"
+#include "firmware/text/number_text.hpp"
 #include "hal/channel_status.hpp"
 #include "hal/try.hpp"
 
@@ -39,6 +44,7 @@ struct CalibrateRequest {
   std::string eye;    ///< F.eye
   std::string plan;   ///< P.toml
   std::string scene;  ///< what a simulated display is like; empty: plain
+  LightWanted light;
   std::uint64_t seed = 0;
   bool resume = false;
   Overrides overrides;  ///< distance
@@ -48,7 +54,9 @@ struct CalibrateRequest {
 std::string configuration_of(const Board& board) {
   std::string text;
   for (const Setting& setting : settings()) {
-    if (setting.section != "eye" && setting.section != "object" && setting.section != "sensor") continue;
+    const bool counts = setting.section == "eye" || setting.section == "object" || setting.section == "sensor" ||
+                        (setting.key == "frame_rate_hz" && !board.source.simulated());
+    if (!counts) continue;
     if (const auto value = setting.show(board)) {
       text += std::string(setting.section) + "." + std::string(setting.key) + " = " + quoted(*value) + "\n";
     }
@@ -121,6 +129,8 @@ Result<Figures> report_of(const CalibrateRequest& o, const calib::SessionProgres
   const std::optional<double> known = median_row_error(TRY(file.load_response(made.id)));
   const auto good = std::count_if(made.rows.rows.begin(), made.rows.rows.end(),
                                   [](const calib::RowEstimate& row) { return row.status == hal::ChannelStatus::good; });
+  const auto exposure_ns = value_in(session.begun.configuration, exposure_key);
+  const auto exposure = exposure_ns ? typed_number(*exposure_ns) : std::nullopt;
   Figures f{{"file", o.eye},
             {"serial", session.begun.serial},
             {"session", session.id},
@@ -129,6 +139,7 @@ Result<Figures> report_of(const CalibrateRequest& o, const calib::SessionProgres
             {"rejected", rejected},
             {"signal_lsb", p.signal_lsb},
             {"settle_ms", p.settle_ms},
+            {"exposure_ms", exposure ? std::optional(*exposure * 1e-6) : std::nullopt},
             {"distance_mm", session.begun.distance_mm},
             {"channels", made.rows.rows.size()},
             {"good_channels", good},
@@ -139,20 +150,18 @@ Result<Figures> report_of(const CalibrateRequest& o, const calib::SessionProgres
             {"display_gamma", made.rows.gamma},
             {"display_black_level", made.rows.black_level}};
   return std::move(f.tell(
-      "{file}: session {session} of {serial} at {distance_mm} mm, {captures} captures[; {rejected} were taken again]\n"
+      "{file}: session {session} of {serial} at {distance_mm} mm, {captures} captures[, exposed for {exposure_ms:4} "
+      "ms][; "
+      "{rejected} were taken again]\n"
       "channels: {statuses}\n"
       "rows known to {row_error:2%|no stated sigma} (median of what is stated); patterns held out: chi^2 "
       "{held_out_chi2:3} a sample\n"
       "display: {plane_distance_error_mm:3} mm from where the board has it, black level {display_black_level:2}\n"));
 }
 
-/// A session is taken, or what is left of one; the session that there is to estimate.
-Result<calib::StoredSession> taken(const CalibrateRequest& o, const Board& board, const sim::Scene& display,
-                                   calib::EyeFile& file, Teller& teller) {
-  if (o.resume) {
-    if (auto left = TRY(unestimated(file))) return std::move(*left);
-  }
-  const SimulatedBench bench = TRY(SimulatedBench::create(board, display, o.seed));
+/// A session is taken, or what is left of one: its id.
+Result<std::int64_t> take(const CalibrateRequest& o, const Board& board, const CalibrationBench& bench,
+                          calib::EyeFile& file, Teller& teller) {
   CalibrationRequest request;
   if (!o.plan.empty()) request.plan = TRY(load_plan(o.plan));
   request.resume = o.resume;
@@ -160,25 +169,55 @@ Result<calib::StoredSession> taken(const CalibrateRequest& o, const Board& board
   request.configuration = configuration_of(board);
   request.program = COMPUEYE_VERSION;
   request.now_unix_s = now_unix_s();
-  const std::int64_t id = TRY(run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file,
-                                              [&](const calib::SessionProgress& p) { return teller.tell(p); }));
-  std::vector<calib::StoredSession> sessions = TRY(file.sessions());
+  return run_calibration(request, bench, file, [&](const calib::SessionProgress& p) { return teller.tell(p); });
+}
+
+Result<std::int64_t> take_simulated(const CalibrateRequest& o, const Board& board, calib::EyeFile& file,
+                                    Teller& teller) {
+  const sim::Scene display =
+      o.scene.empty() ? plain_display(board) : TRY(choose_scene(board, SceneChoice{o.scene, 0, std::nullopt}));
+  const SimulatedBench bench = TRY(SimulatedBench::create(board, display, o.seed));
+  return take(o, board, {*bench.eye, *bench.display, *bench.clock}, file, teller);
+}
+
+Result<AttachedBench> attached_bench(const CalibrateRequest& o, const Board& board, Session& session) {
+  return AttachedBench::create(board, o.light, session.clock(),
+                               {[&session](std::string_view sentence) { session.note(sentence); },
+                                [&session] { return !session.stop_requested(); }});
+}
+
+/// The session that there is to estimate, and its file, which is of the eye that is there.
+Result<calib::StoredSession> taken(const CalibrateRequest& o, Board& board, std::optional<calib::EyeFile>& file,
+                                   Session& session, Teller& teller) {
+  if (o.resume) {
+    file = TRY(calib::EyeFile::open(o.eye, calib::EyeFileMode::write));
+    TRY(check_is_of(*file, board));
+    if (auto left = TRY(unestimated(*file))) return std::move(*left);
+    TRY(file->close());
+  }
+  std::int64_t id = 0;
+  if (board.source.simulated()) {
+    file = TRY(writable_eye_file(o.eye, board));
+    id = TRY(take_simulated(o, board, *file, teller));
+  } else {
+    AttachedBench bench = TRY(attached_bench(o, board, session));
+    board.source.serial = bench.eye->describe().serial;
+    file = TRY(writable_eye_file(o.eye, board));
+    id = TRY(take(o, board, {*bench.eye, *bench.light, session.clock(), &bench.exposure}, *file, teller));
+  }
+  std::vector<calib::StoredSession> sessions = TRY(file->sessions());
   return std::move(*std::ranges::find(sessions, id, &calib::StoredSession::id));
 }
 
 Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   Board board = TRY(load_board(o.board));
   TRY(o.overrides.apply(board));
-  if (!board.source.simulated()) {
-    return hal::fail(ErrorCode::unsupported, board.place("source", "kind"),
-                     "is '" + board.source.kind + "': so far sessions are for simulated eyes, whose kind is 'sim'");
-  }
-  const sim::Scene display =
-      o.scene.empty() ? plain_display(board) : TRY(choose_scene(board, SceneChoice{o.scene, 0, std::nullopt}));
+  TRY(light_kind(o.light.kind, board.source.simulated()));
+  TRY(need(o.scene.empty() || board.source.simulated(), "--scene", "is of a simulated display; leave it out"));
   if (!o.plan.empty()) TRY(load_plan(o.plan));  // before a file is made
-  calib::EyeFile file = TRY(writable_eye_file(o.eye, board));
+  std::optional<calib::EyeFile> file;
   Teller teller(session);
-  const calib::StoredSession done = TRY(taken(o, board, display, file, teller));
+  const calib::StoredSession done = TRY(taken(o, board, file, session, teller));
   session.end_progress();
   EstimateRequest wanted;
   wanted.exposure_s = eye_to_simulate(board).integration_s();
@@ -186,10 +225,10 @@ Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   wanted.program = COMPUEYE_VERSION;
   wanted.now_unix_s = now_unix_s();
   wanted.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
-  const SessionEstimate made = TRY(estimate_session(file, done, wanted, session.progress()));
+  const SessionEstimate made = TRY(estimate_session(*file, done, wanted, session.progress()));
   session.end_progress();
-  Figures report = TRY(report_of(o, teller.last(), done, made, file));
-  TRY(file.close());
+  Figures report = TRY(report_of(o, teller.last(), done, made, *file));
+  TRY(file->close());
   return session.print(std::move(report));
 }
 
@@ -199,6 +238,13 @@ Action declare(OptionList& options) {
   options.add("--eye", o->eye, ".eye file that the session goes into; it is made where there is none").required();
   options.add("--plan", o->plan, ".toml file of what is captured (default: see docs/calibration.md)");
   options.add("--scene", o->scene, ".toml file of what a simulated display is like");
+  options
+      .add("--light", o->light.kind,
+           "what shows the patterns: " + choices(light_names()) + " (default: sim for a simulated eye, else display)")
+      .where(one_of(light_names()));
+  options.add("--monitor", o->light.monitor, "number of the display's monitor, from 0");
+  options.flag("--window", o->light.in_window, "a window on it instead of all of it");
+  options.add("--picture", o->light.picture, "PNG file that light by hand is asked for with (default: pattern.png)");
   options.settings("calibrate", o->overrides);
   options.add("--seed", o->seed, "of a simulated eye's noise");
   options.flag("--resume", o->resume, "go on with a session that was cut off, or with its estimate");
@@ -213,7 +259,8 @@ std::string footer() {
          "Examples:\n"
          "  compueye calibrate --board boards/sim-8x8-built --eye built.eye\n"
          "  compueye calibrate --board boards/sim-8x8-built --eye built.eye --scene scenes/calibration-display.toml "
-         "--resume\n";
+         "--resume\n"
+         "  compueye calibrate --board boards/generic-usb --eye ce-1.eye --light display --monitor 1\n";
 }
 
 }  // namespace

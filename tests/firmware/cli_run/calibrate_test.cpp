@@ -70,12 +70,23 @@ TEST_CASE("what a session measured is estimated by --resume where a stop came be
   CHECK(contains(again.err, "--resume"));
 }
 
-TEST_CASE("a board whose eye is not simulated is told that its sessions are to come, and leaves no file") {
+TEST_CASE("a session of an eye that is not there, and before a light that it cannot see, leaves no file") {
   const CopiedBoard board;
-  board.change("kind = \"sim\"", "kind = \"usb\"");
   const auto eye = board.outside("a.eye");
-  const Ended ended = test::compueye({"calibrate", "--board", board.path().string(), "--eye", eye.string()});
-  CHECK(ended.exit_code == 1);
-  CHECK(contains(ended.err, "'usb'"));
+  const std::vector<std::string> calibrate{"calibrate", "--board", board.path().string(), "--eye", eye.string()};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), calibrate.begin(), calibrate.end());
+    return test::compueye(more);
+  };
+  const Ended display = with({"--light", "display"});
+  CHECK(display.exit_code == 2);
+  CHECK(contains(display.err, "--light"));
+  CHECK(with({"--light", "lamp"}).exit_code == 2);
+  board.change("kind = \"sim\"", "kind = \"usb\"");
+  CHECK(with({"--light", "sim"}).exit_code == 2);
+  CHECK(with({"--scene", "a.toml"}).exit_code == 2);
+  const Ended absent = with({});
+  CHECK(absent.exit_code == 1);
+  CHECK(contains(absent.err, "SIM-8X8"));
   CHECK_FALSE(std::filesystem::exists(eye));
 }

@@ -85,6 +85,9 @@ struct UsbPort::Plugged {
 UsbPort::UsbPort(Testbed& testbed, const protocol::EmulatorSettings& eye, int port)
     : cable(eye), testbed_(testbed), entry_{.port = port} {}
 
+UsbPort::UsbPort(Testbed& testbed, const protocol::EmulatorSettings& eye, protocol::SampleGenerator samples)
+    : cable(eye, std::move(samples), 1'000'000'000), testbed_(testbed), entry_{.port = 4} {}
+
 UsbPort::~UsbPort() = default;
 
 EmulatedUsbfs& UsbPort::file() {

@@ -44,6 +44,8 @@ class Testbed {
 class UsbPort {
  public:
   UsbPort(Testbed& testbed, const protocol::EmulatorSettings& eye, int port = 4);
+  /// Whose time is real, as sessions want it that show something at a time.
+  UsbPort(Testbed& testbed, const protocol::EmulatorSettings& eye, protocol::SampleGenerator samples);
   ~UsbPort();
 
   /// Plugs the eye in: a new device file.

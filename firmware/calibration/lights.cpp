@@ -1,0 +1,112 @@
+#include "firmware/calibration/lights.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "drivers/illuminator/device_light.hpp"
+#include "drivers/illuminator/display_light.hpp"
+#include "drivers/illuminator/manual_light.hpp"
+#include "firmware/files/png.hpp"
+#include "hal/try.hpp"
+
+namespace compueye::firmware {
+namespace {
+
+using hal::ErrorCode;
+using hal::Result;
+using Light = Result<std::unique_ptr<hal::Illuminator>>;
+
+/// Whoever waits beside a running eye reads it, so that its frames do not pile up and it is got back when it is lost.
+Result<void> keep_reading(const LightSite& site, std::int64_t wait_ns) {
+  if (!site.person.go_on()) return hal::fail(ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
+  const std::int64_t until_ns = site.clock.now_ns() + wait_ns;
+  if (!site.eye.started()) {
+    site.clock.sleep_until_ns(until_ns);
+    return {};
+  }
+  const auto block = site.eye.read(until_ns);
+  if (block || block.error().code == ErrorCode::timeout) return {};
+  return tl::unexpected(block.error());
+}
+
+Light display(const LightWanted& wanted, const LightSite& site) {
+  auto light = TRY(illuminator::DisplayLight::create(
+      {site.plane.rows, site.plane.cols, wanted.monitor, wanted.in_window}, site.clock));
+  const illuminator::CentredPicture& place = light->place();
+  site.person.tell(fmt::format(
+      "patterns are {} x {} pixels of the monitor, {} of each to a side of the pattern's own; the board has "
+      "them {:g} x {:g} mm",
+      place.width, place.height, place.scale, site.plane.width_mm, site.plane.height_mm));
+  return light;
+}
+
+/// A request that the eye has no answer to is made again when it is back.
+Result<void> set_lamp(const LightSite& site, const protocol::Illumination& wanted) {
+  constexpr int most_tries = 5;
+  constexpr std::int64_t wait_ns = 100'000'000;
+  for (int tries = 1;; ++tries) {
+    auto done = site.eye.set_illumination(wanted);
+    if (done || tries >= most_tries) return done;
+    do {
+      TRY(keep_reading(site, wait_ns));
+    } while (site.eye.recovering());
+  }
+}
+
+Light device(const LightWanted&, const LightSite& site) {
+  return TRY(illuminator::DeviceLight::create(
+      site.eye.descriptor(), site.plane.rows, site.plane.cols,
+      [site](const protocol::Illumination& each) { return set_lamp(site, each); }, site.clock));
+}
+
+Light manual(const LightWanted& wanted, const LightSite& site) {
+  constexpr std::int64_t wait_ns = 20'000'000;
+  illuminator::ManualSettings settings;
+  settings.rows = site.plane.rows;
+  settings.cols = site.plane.cols;
+  settings.file = wanted.picture;
+  settings.write = [file = wanted.picture](const hal::Image& picture) { return write_png(file, picture); };
+  settings.tell = site.person.tell;
+  settings.meanwhile = [site] { return keep_reading(site, wait_ns); };
+  settings.input = site.person.terminal;
+  return TRY(illuminator::ManualLight::create(std::move(settings), site.clock));
+}
+
+constexpr std::array kinds{
+    LightKind{"sim", "a simulated display before a simulated eye, as --scene has it", nullptr},
+    LightKind{"display", "a monitor or projector of this machine, all of it or with --window a part", display},
+    LightKind{"device", "lamps of the eye's own device, one for each pixel of the object plane", device},
+    LightKind{"manual", "you: the pattern is written to --picture, and Enter says that it is before the eye", manual},
+};
+
+}  // namespace
+
+std::span<const LightKind> light_kinds() noexcept {
+  return kinds;
+}
+
+std::vector<std::string_view> light_names() {
+  std::vector<std::string_view> names;
+  for (const LightKind& each : kinds) names.push_back(each.name);
+  return names;
+}
+
+Result<const LightKind*> light_kind(std::string_view name, bool simulated_eye) {
+  if (name.empty()) name = simulated_eye ? "sim" : "display";
+  const auto* const found =
+      std::find_if(kinds.begin(), kinds.end(), [&](const auto& each) { return each.name == name; });
+  if (found != kinds.end() && (found->make == nullptr) == simulated_eye) return found;
+  return hal::fail(ErrorCode::usage, "--light",
+                   fmt::format("'{}' is no light that {} eye sees", name, simulated_eye ? "a simulated" : "a real"));
+}
+
+std::string light_reference() {
+  std::string text = "| `--light` | what shows the patterns |\n|---|---|\n";
+  for (const LightKind& each : kinds) text += fmt::format("| `{}` | {} |\n", each.name, each.meaning);
+  return text;
+}
+
+}  // namespace compueye::firmware

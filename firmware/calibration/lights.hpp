@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/device/device_source.hpp"
+#include "hal/clock.hpp"
+#include "hal/eye_geometry.hpp"
+#include "hal/illuminator.hpp"
+#include "hal/result.hpp"
+
+namespace compueye::firmware {
+
+/// What a person says of the light.
+struct LightWanted {
+  std::string kind;                     ///< of light_kinds()
+  int monitor = 0;                      ///< of a display
+  bool in_window = false;               ///< of a display
+  std::string picture = "pattern.png";  ///< that light by hand is asked for with
+};
+
+/// Whoever calibrates.
+struct Person {
+  std::function<void(std::string_view)> tell;  ///< takes a sentence
+  std::function<bool()> go_on;                 ///< false: wants it to stop
+  int terminal = 0;                            ///< file descriptor
+};
+
+/// What a light is made for, and what it may use. All of it outlives the light.
+struct LightSite {
+  hal::ObjectPlane plane;
+  device::DeviceSource& eye;
+  hal::Clock& clock;
+  Person person;
+};
+
+/// What puts patterns before an eye: a row each.
+struct LightKind {
+  std::string_view name;
+  std::string_view meaning;  ///< for --help and docs/calibration.md
+  /// Before an eye on a cable; null: before simulated ones only. Errors: those of the light.
+  hal::Result<std::unique_ptr<hal::Illuminator>> (*make)(const LightWanted& wanted, const LightSite& site);
+};
+[[nodiscard]] std::span<const LightKind> light_kinds() noexcept;
+[[nodiscard]] std::vector<std::string_view> light_names();
+
+/// The row of this name; with an empty one that which people mean. Error usage (at --light): a light that this eye
+/// cannot see.
+[[nodiscard]] hal::Result<const LightKind*> light_kind(std::string_view name, bool simulated_eye);
+
+/// The table of docs/calibration.md.
+[[nodiscard]] std::string light_reference();
+
+}  // namespace compueye::firmware

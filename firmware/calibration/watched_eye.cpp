@@ -1,0 +1,60 @@
+#include "firmware/calibration/watched_eye.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace compueye::firmware {
+namespace {
+
+constexpr std::int64_t no_frame_ns = 10'000'000'000, wait_ns = 200'000'000;
+
+}  // namespace
+
+WatchedEye::WatchedEye(hal::SampleSource& source, hal::Clock& clock) : source_(source), clock_(clock) {
+  const auto& map = source.describe().ommatidium_of_channel;
+  std::vector<std::int32_t> order(map.size());
+  std::iota(order.begin(), order.end(), 0);
+  in_order_ = map == order;
+  codes_.resize(map.size());
+  valid_.resize(map.size());
+  outages_ = source.outages();
+}
+
+hal::SampleBlock WatchedEye::ordered(const hal::SampleBlock& block) {
+  if (in_order_) return block;
+  const auto& map = source_.describe().ommatidium_of_channel;
+  for (std::size_t c = 0; c < map.size(); ++c) {
+    const auto m = static_cast<std::size_t>(map[c]);
+    codes_[m] = block.codes[c];
+    valid_[m] = block.valid[c];
+  }
+  hal::SampleBlock made = block;
+  made.codes = codes_;
+  made.valid = valid_;
+  return made;
+}
+
+hal::Result<hal::SampleBlock> WatchedEye::next(const std::function<bool()>& go_on) {
+  std::int64_t waiting_since_ns = clock_.now_ns();
+  for (;;) {
+    auto block = source_.read(clock_.now_ns() + wait_ns);
+    if (block) return ordered(*block);
+    if (block.error().code == hal::ErrorCode::disconnected) {
+      block.error().sentence += "; --resume goes on with the session";
+    }
+    if (block.error().code != hal::ErrorCode::timeout) return block;
+    if (!go_on()) return hal::fail(hal::ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
+    // It bounds that itself, and has a stream to wait for when it is over.
+    if (source_.recovering()) waiting_since_ns = clock_.now_ns();
+    if (clock_.now_ns() - waiting_since_ns < no_frame_ns) continue;
+    return hal::fail(hal::ErrorCode::timeout, source_.describe().serial,
+                     "gave no frame for 10 s: see to its cable, and go on with --resume");
+  }
+}
+
+bool WatchedEye::was_lost() noexcept {
+  return std::exchange(outages_, source_.outages()) != source_.outages();
+}
+
+}  // namespace compueye::firmware
