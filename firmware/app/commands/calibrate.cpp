@@ -14,6 +14,7 @@
 #include "calib/median.hpp"
 #include "firmware/app/command.hpp"
 #include "firmware/calibration/calibration_run.hpp"
+#include "firmware/calibration/error_budget.hpp"
 #include "firmware/calibration/plan_file.hpp"
 #include "firmware/calibration/row_error.hpp"
 #include "firmware/calibration/session_estimate.hpp"
@@ -41,6 +42,7 @@ struct CalibrateRequest {
   std::string scene;  ///< what a simulated display is like; empty: plain
   std::uint64_t seed = 0;
   bool resume = false;
+  bool budget = false;  ///< also of an eye where that takes long
   Overrides overrides;  ///< distance
 };
 
@@ -137,13 +139,32 @@ Result<Figures> report_of(const CalibrateRequest& o, const calib::SessionProgres
             {"held_out_chi2", median_chi2(made.rows)},
             {"plane_distance_error_mm", made.rows.plane.distance_mm},
             {"display_gamma", made.rows.gamma},
-            {"display_black_level", made.rows.black_level}};
-  return std::move(f.tell(
+            {"display_black_level", made.rows.black_level},
+            {"budget", made.budget ? Value(figures_of(*made.budget)) : Value()}};
+  f.tell(
       "{file}: session {session} of {serial} at {distance_mm} mm, {captures} captures[; {rejected} were taken again]\n"
       "channels: {statuses}\n"
       "rows known to {row_error:2%|no stated sigma} (median of what is stated); patterns held out: chi^2 "
       "{held_out_chi2:3} a sample\n"
-      "display: {plane_distance_error_mm:3} mm from where the board has it, black level {display_black_level:2}\n"));
+      "display: {plane_distance_error_mm:3} mm from where the board has it, black level {display_black_level:2}\n");
+  if (!made.budget) return f;
+  return std::move(
+      f.tell("a picture of the board's scene: " + budget_parts("budget") + "\n" + budget_outlook("budget") + "\n"));
+}
+
+/// What the report says of how good pictures are going to be. An eye without it is as good.
+Result<std::optional<ErrorBudget>> budget_of(const CalibrateRequest& o, const Board& board,
+                                             const calib::ResponseEstimate& rows, std::int64_t patterns,
+                                             Session& session) {
+  if (board.object.pixels() > most_budget_pixels && !o.budget) {
+    session.note("what errors of the rows do to pictures is left out, since it takes minutes; --budget tells");
+    return std::optional<ErrorBudget>();
+  }
+  auto made = error_budget(board, rows, patterns, session.progress());
+  if (made) return std::optional(*made);
+  TRY(session.check_stop());
+  session.note("what errors of the rows do to pictures is not known: " + made.error().text());
+  return std::optional<ErrorBudget>();
 }
 
 /// A session is taken, or what is left of one; the session that there is to estimate.
@@ -186,6 +207,9 @@ Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   wanted.program = COMPUEYE_VERSION;
   wanted.now_unix_s = now_unix_s();
   wanted.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
+  wanted.budget = [&](const calib::ResponseEstimate& rows, std::int64_t patterns) {
+    return budget_of(o, board, rows, patterns, session);
+  };
   const SessionEstimate made = TRY(estimate_session(file, done, wanted, session.progress()));
   session.end_progress();
   Figures report = TRY(report_of(o, teller.last(), done, made, file));
@@ -202,6 +226,9 @@ Action declare(OptionList& options) {
   options.settings("calibrate", o->overrides);
   options.add("--seed", o->seed, "of a simulated eye's noise");
   options.flag("--resume", o->resume, "go on with a session that was cut off, or with its estimate");
+  options.flag("--budget", o->budget,
+               "tell what errors of the rows do to pictures, also of a display beyond 4096 pixels, where that takes "
+               "minutes");
   options.json("print one object and nothing else on stdout");
   return action_of(o, calibrate);
 }
