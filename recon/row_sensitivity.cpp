@@ -135,9 +135,9 @@ class DrawnErrors {
   [[nodiscard]] const Values& of(std::size_t kind, int draw) const {
     return samples_[kind][static_cast<std::size_t>(draw)];
   }
-  /// (||row error|| / ||row||)^2, mean over the rows.
+  /// (||row errors|| / ||rows||)^2
   [[nodiscard]] double row_error_squared(std::size_t kind, int draw) const {
-    return squares_[kind][static_cast<std::size_t>(draw)] / rows_;
+    return squares_[kind][static_cast<std::size_t>(draw)] / light_;
   }
 
  private:
@@ -148,18 +148,19 @@ class DrawnErrors {
     const double norm = std::sqrt(dot(row.entries(), row.entries()));
     std::array<double, kinds> light{};
     for (std::size_t d = 0; d < kinds; ++d) light[d] = norm * seen(row, directions[d]);
-    rows_ += 1.0;
+    const double square = norm * norm;
+    light_ += square;
     for (std::size_t draw = 0; draw < draws; ++draw) {
       const double gain = normal(), across = normal(), down = normal(), width = normal();
       samples_[0][draw][m] = gain * light[0];
       samples_[1][draw][m] = across * light[1] + down * light[2];
       samples_[2][draw][m] = width * light[3];
-      squares_[0][draw] += gain * gain;
-      squares_[1][draw] += across * across + down * down;
-      squares_[2][draw] += width * width;
+      squares_[0][draw] += square * gain * gain;
+      squares_[1][draw] += square * (across * across + down * down);
+      squares_[2][draw] += square * width * width;
       const Values rest = rest_of(row, directions, first);
       samples_[3][draw][m] = norm * seen(row, rest);
-      squares_[3][draw] += dot(rest, rest);
+      squares_[3][draw] += square * dot(rest, rest);
     }
   }
 
@@ -187,7 +188,7 @@ class DrawnErrors {
   SmoothField field_;
   std::array<std::array<Values, draws>, kinds> samples_;
   std::array<std::array<double, draws>, kinds> squares_{};
-  double rows_ = 0.0;
+  double light_ = 0.0;  // ||rows||^2
   std::mt19937_64 bits_{17};
   std::normal_distribution<double> normal_;
 };

@@ -11,7 +11,8 @@ namespace compueye::recon {
 
 /// What errors of measured rows do to a reconstruction, beside what noise does and what the eye does not tell anyway.
 struct RowSensitivity {
-  /// NMSE added by rows that are off, each row by itself, in units of (||row error|| / ||row||)^2. By kind, at right
+  /// NMSE added by rows that are off, each row by itself and in proportion to it, in units of (||errors of all rows|| /
+  /// ||all rows||)^2. By kind, at right
   /// angles in this order: gain; pose (the row seen elsewhere); width (the row grown about its centre); the rest.
   std::array<double, 4> kappa{};
   double noise = 0.0;        ///< NMSE added by white noise of the samples
@@ -22,7 +23,7 @@ struct RowSensitivity {
 struct EntryErrors {
   std::span<const float> sigma;  ///< a stored entry each, >= 0; empty: in proportion to the entries
   double pitch_px = 4.0;         ///< over which errors of neighbouring entries are alike, >= 1
-  /// ||row error|| / ||row|| by kind, as large as which they are solved; 0: as noise is.
+  /// ||errors of all rows|| / ||all rows|| by kind, as large as which they are solved; 0: as noise is.
   std::array<double, 4> size{};
 };
 

@@ -42,24 +42,28 @@ constexpr std::array<KindNumber, 4> kind_numbers{{{"", &Kind::kappa},
 constexpr std::string_view noise_name = "nmse.noise", unperturbed_name = "nmse.unperturbed",
                            patterns_name = "budget.patterns", misfit_name = "budget.misfit_share";
 
-/// Root mean squares over the rows that tell, since it is squares that add up in a picture.
+/// Over the rows that tell, all squared errors over all squared entries: what is added up in a picture is squares, and
+/// rows that hardly see the plane hardly matter to it.
 Result<ErrorBudget> row_errors(const calib::ResponseEstimate& estimate) {
   ErrorBudget budget;
-  double rows = 0.0, misfits = 0.0;
+  double rows = 0.0, misfits = 0.0, light = 0.0;
   for (const calib::RowEstimate& row : estimate.rows) {
     if (!row.errors) continue;
     rows += 1.0;
     if (row.inflation > misfit_inflation) misfits += 1.0;
+    double norm = 0.0;
+    for (const float value : row.values) norm += square(static_cast<double>(value));
+    light += norm;
     for (std::size_t k = 0; k < budget.kinds.size(); ++k) {
-      budget.kinds[k].stated += square(row.errors->stated[k]);
-      budget.kinds[k].statistical += square(row.errors->statistical[k]);
-      budget.kinds[k].of_twice += square(row.errors->of_twice[k]);
+      budget.kinds[k].stated += norm * square(row.errors->stated[k]);
+      budget.kinds[k].statistical += norm * square(row.errors->statistical[k]);
+      budget.kinds[k].of_twice += norm * square(row.errors->of_twice[k]);
     }
   }
-  if (rows == 0.0) return hal::fail(hal::ErrorCode::usage, "error budget", "no row tells its errors by kind");
+  if (!(light > 0.0)) return hal::fail(hal::ErrorCode::usage, "error budget", "no row tells its errors by kind");
   for (Kind& kind : budget.kinds) {
     for (double Kind::*each : {&Kind::stated, &Kind::statistical, &Kind::of_twice}) {
-      kind.*each = std::sqrt(kind.*each / rows);
+      kind.*each = std::sqrt(kind.*each / light);
     }
   }
   budget.misfit_share = misfits / rows;
@@ -77,7 +81,8 @@ std::vector<float> sigmas_of(const calib::ResponseEstimate& estimate) {
 /// Drawings of the board's scene; the same for every seed: one.
 Result<std::vector<hal::Image>> truths_of(const Board& board) {
   std::vector<hal::Image> truths;
-  for (std::uint64_t seed = 0; seed < most_drawings; ++seed) {
+  const std::uint64_t drawings = board.object.pixels() > most_budget_pixels ? 1 : most_drawings;
+  for (std::uint64_t seed = 0; seed < drawings; ++seed) {
     const sim::Scene scene = TRY(choose_scene(board, SceneChoice{{}, seed, std::nullopt}));
     hal::Image truth = TRY(sim::scene_truth(scene, board.object));
     if (!truths.empty() && truth.pixels == truths.back().pixels) break;

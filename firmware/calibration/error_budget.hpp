@@ -20,7 +20,7 @@ namespace compueye::firmware {
 /// All of it estimates, and parts are added as if they knew nothing of each other. Rows that fit worse than noise
 /// explains have sigmas that say up to twenty times more than they are off: what those state beyond that is told apart.
 struct ErrorBudget {
-  /// Of rows, in one way of being off. Row errors are relative, rms over the rows.
+  /// Of rows, in one way of being off. Row errors are relative: of all rows over all rows, in the root of squares.
   struct Kind {
     double kappa = 0.0;        ///< NMSE over the squared row error
     double stated = 0.0;       ///< row error by the stated sigmas, misfit included
@@ -44,7 +44,7 @@ struct ErrorBudget {
   [[nodiscard]] std::string_view largest() const noexcept;
 };
 
-/// Pictures of more pixels take minutes.
+/// Pictures of more pixels take minutes, and one drawing has to do.
 inline constexpr int most_budget_pixels = 4096;
 
 /// Of an eye with these rows in front of the board's default scene (up to eight drawings of it, medians), solved and

@@ -148,6 +148,23 @@ TEST_CASE("inspect of a file without anything but its eye, and of one that is no
   check_failed(run_compueye("inspect cut.eye", folder.path()), ErrorCode::bad_format, "cut.eye", {});
 }
 
+TEST_CASE("inspect --html writes one page, whole or not at all, of eye files alone") {
+  const ScratchProblem problem;
+  const TemporaryFolder& folder = problem.folder();
+  put_eye_file(folder);
+  const auto json = json_from("inspect F.eye --html eye.html --json", folder.path());
+  CHECK(json["html"] == "eye.html");
+  CHECK(json["estimates"].size() == 2);
+  const std::string page = bytes_of(folder / "eye.html");
+  CHECK(page.starts_with("<!DOCTYPE html>"));
+  CHECK(page.ends_with("</html>\n"));
+  CHECK(page.find("63 good: no mark") != std::string::npos);
+  check_refused(problem, "inspect A.npy --html z.html", ErrorCode::usage, "--html", {"A.npy", ".eye"});
+  check_refused(problem, "inspect F.eye --html none/z.html", ErrorCode::not_found, "none/z.html", {});
+  check_refused(problem, "inspect F.eye --html /dev/full", ErrorCode::no_space, "/dev/full", {});
+  CHECK(run_compueye("inspect F.eye --html -", folder.path()).out == page);
+}
+
 TEST_CASE("export writes the newest rows, those of masked channels empty, for every reader") {
   const TemporaryFolder folder;
   put_eye_file(folder);
