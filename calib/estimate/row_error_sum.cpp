@@ -7,7 +7,6 @@
 namespace compueye::calib {
 namespace {
 
-constexpr auto kinds = row_error_kinds.size();
 /// Whose directions these are, in the order of directions(): gain, two tilts, half angle, order.
 constexpr std::array<RowErrorKind, ConeRow::changes + 1> kind_of{
     RowErrorKind::gain, RowErrorKind::pose, RowErrorKind::pose, RowErrorKind::width, RowErrorKind::width};
@@ -71,14 +70,10 @@ RowErrors::ByKind RowErrorSum::variances(const Eigen::MatrixXd& covariance) cons
   return found;
 }
 
-RowErrors RowErrorSum::errors(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& of_twice,
-                              double inflation) const {
-  RowErrors found;
-  const RowErrors::ByKind now = variances(covariance), later = variances(of_twice);
-  for (std::size_t k = 0; k < kinds; ++k) {
-    found.statistical[k] = std::sqrt(now[k]);
-    found.stated[k] = inflation * found.statistical[k];
-    found.of_twice[k] = std::sqrt(later[k]);
+RowErrors RowErrorSum::errors(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& of_twice) const {
+  RowErrors found{variances(covariance), variances(of_twice)};
+  for (auto* all : {&found.now, &found.of_twice}) {
+    for (double& each : *all) each = std::sqrt(each);
   }
   return found;
 }

@@ -21,9 +21,8 @@ class RowErrorSum {
   };
   void add(const Entry& entry, EntryGradient gradient);
 
-  /// `covariance`: of the unknowns; `of_twice`: had there been each pattern twice. `inflation` as in RowEstimate.
-  [[nodiscard]] RowErrors errors(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& of_twice,
-                                 double inflation) const;
+  /// `covariance`: of the unknowns; `of_twice`: had there been each pattern twice.
+  [[nodiscard]] RowErrors errors(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& of_twice) const;
 
  private:
   [[nodiscard]] Eigen::MatrixXd directions(Eigen::Index unknowns) const;

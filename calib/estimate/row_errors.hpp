@@ -15,12 +15,12 @@ enum class RowErrorKind {
 };
 inline constexpr std::array<std::string_view, 4> row_error_kinds{"gain", "pose", "width", "rest"};
 
-/// Standard deviations over the norm of the row, by kind. Their squares add up to that of the whole row.
+/// Standard deviations over the norm of the row, by kind, as noise and prior have it: not widened by the patterns held
+/// out. Their squares add up to that of the whole row.
 struct RowErrors {
   using ByKind = std::array<double, row_error_kinds.size()>;
-  ByKind stated{};       ///< widened by the patterns held out
-  ByKind statistical{};  ///< as noise and prior alone have it
-  ByKind of_twice{};     ///< the same had there been each pattern twice
+  ByKind now{};
+  ByKind of_twice{};  ///< had there been each pattern twice
 };
 
 }  // namespace compueye::calib

@@ -184,7 +184,7 @@ void RowEstimator::fill(int channel, const FieldSystem::Solution& solution, RowE
     row.sigmas.push_back(static_cast<float>(row.inflation * std::sqrt(variance)));
     if (telling) errors.add(entry, std::move(gradient));
   }
-  if (telling) row.errors = errors.errors(solution.covariance, solution.covariance_of_twice, row.inflation);
+  if (telling) row.errors = errors.errors(solution.covariance, solution.covariance_of_twice);
 }
 
 }  // namespace compueye::calib

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -35,12 +35,18 @@ struct KindNumber {
   std::string_view prefix;
   double Kind::*member;
 };
-constexpr std::array<KindNumber, 4> kind_numbers{{{"", &Kind::kappa},
-                                                  {"row_error.", &Kind::stated},
-                                                  {"row_error.statistical.", &Kind::statistical},
-                                                  {"row_error.of_twice.", &Kind::of_twice}}};
-constexpr std::string_view noise_name = "nmse.noise", unperturbed_name = "nmse.unperturbed",
-                           patterns_name = "budget.patterns", misfit_name = "budget.misfit_share";
+constexpr std::array<KindNumber, 3> kind_numbers{
+    {{"", &Kind::kappa}, {"row_error.", &Kind::row_error}, {"row_error.of_twice.", &Kind::of_twice}}};
+/// And the others.
+struct Number {
+  std::string_view name;
+  double ErrorBudget::*member;
+};
+constexpr std::array<Number, 4> budget_numbers{{{"nmse.noise", &ErrorBudget::noise},
+                                                {"nmse.unperturbed", &ErrorBudget::unperturbed},
+                                                {"budget.surplus", &ErrorBudget::surplus},
+                                                {"budget.misfit_share", &ErrorBudget::misfit_share}}};
+constexpr std::string_view patterns_name = "budget.patterns";
 
 /// Over the rows that tell, all squared errors over all squared entries: what is added up in a picture is squares, and
 /// rows that hardly see the plane hardly matter to it.
@@ -55,19 +61,31 @@ Result<ErrorBudget> row_errors(const calib::ResponseEstimate& estimate) {
     for (const float value : row.values) norm += square(static_cast<double>(value));
     light += norm;
     for (std::size_t k = 0; k < budget.kinds.size(); ++k) {
-      budget.kinds[k].stated += norm * square(row.errors->stated[k]);
-      budget.kinds[k].statistical += norm * square(row.errors->statistical[k]);
+      budget.kinds[k].row_error += norm * square(row.errors->now[k]);
       budget.kinds[k].of_twice += norm * square(row.errors->of_twice[k]);
     }
   }
   if (!(light > 0.0)) return hal::fail(hal::ErrorCode::usage, "error budget", "no row tells its errors by kind");
   for (Kind& kind : budget.kinds) {
-    for (double Kind::*each : {&Kind::stated, &Kind::statistical, &Kind::of_twice}) {
+    for (double Kind::*each : {&Kind::row_error, &Kind::of_twice}) {
       kind.*each = std::sqrt(kind.*each / light);
     }
   }
   budget.misfit_share = misfits / rows;
   return budget;
+}
+
+/// What chi^2 of the patterns held out has beyond one, in the noise of a single frame.
+double surplus_of(const calib::ResponseEstimate& estimate, std::span<const double> frames) {
+  double sum = 0.0, rows = 0.0;
+  for (const calib::RowEstimate& row : estimate.rows) {
+    if (row.status != hal::ChannelStatus::good || !(row.held_out_chi2 > 0.0)) continue;
+    sum += row.held_out_chi2 - 1.0;
+    rows += 1.0;
+  }
+  const double all = std::accumulate(frames.begin(), frames.end(), 0.0);
+  if (rows == 0.0 || !(all > 0.0)) return 0.0;
+  return std::max(sum / rows, 0.0) * static_cast<double>(frames.size()) / all;
 }
 
 std::vector<float> sigmas_of(const calib::ResponseEstimate& estimate) {
@@ -106,9 +124,7 @@ double ErrorBudget::rows() const noexcept {
 }
 
 double ErrorBudget::misfit() const noexcept {
-  double sum = 0.0;
-  for (const Kind& kind : kinds) sum += kind.kappa * std::max(square(kind.stated) - square(kind.statistical), 0.0);
-  return sum;
+  return std::max(noise * surplus - rows(), 0.0);
 }
 
 double ErrorBudget::rows_with_twice() const noexcept {
@@ -128,10 +144,11 @@ std::string_view ErrorBudget::largest() const noexcept {
   return noise > unperturbed ? "noise" : "what the eye does not tell";
 }
 
-Result<ErrorBudget> error_budget(const Board& board, const calib::ResponseEstimate& rows, std::int64_t patterns,
-                                 const recon::Progress& progress) {
+Result<ErrorBudget> error_budget(const Board& board, const calib::ResponseEstimate& rows,
+                                 std::span<const double> frames, const recon::Progress& progress) {
   ErrorBudget budget = TRY(row_errors(rows));
-  budget.patterns = patterns;
+  budget.surplus = surplus_of(rows, frames);
+  budget.patterns = static_cast<std::int64_t>(frames.size());
   const LivingResponse living = living_response(board, TRY(rows.response(board.object)));
   const ReadyEye eye = TRY(ReadyEye::make(board, living, "", progress));
   const std::vector<float> sigma = sigmas_of(rows);
@@ -139,7 +156,7 @@ Result<ErrorBudget> error_budget(const Board& board, const calib::ResponseEstima
   const double noise = std::max(board.noise_sigma(), 1e-6);
   const bool same = static_cast<std::int64_t>(sigma.size()) == living.response.stored_entries();
   recon::EntryErrors errors{same ? std::span(sigma) : std::span<const float>(), calib::EstimateSettings().pitch_px, {}};
-  for (std::size_t k = 0; k < budget.kinds.size(); ++k) errors.size[k] = budget.kinds[k].statistical;
+  for (std::size_t k = 0; k < budget.kinds.size(); ++k) errors.size[k] = budget.kinds[k].row_error;
   std::vector<recon::RowSensitivity> all;
   for (const hal::Image& truth : TRY(truths_of(board))) {
     all.push_back(
@@ -161,9 +178,7 @@ std::vector<calib::NamedNumber> numbers_of(const ErrorBudget& budget) {
           {std::string(each.prefix) + std::string(calib::row_error_kinds[k]), budget.kinds[k].*each.member});
     }
   }
-  numbers.push_back({std::string(noise_name), budget.noise});
-  numbers.push_back({std::string(unperturbed_name), budget.unperturbed});
-  numbers.push_back({std::string(misfit_name), budget.misfit_share});
+  for (const Number& each : budget_numbers) numbers.push_back({std::string(each.name), budget.*each.member});
   numbers.push_back({std::string(patterns_name), static_cast<double>(budget.patterns)});
   return numbers;
 }
@@ -183,9 +198,7 @@ std::optional<ErrorBudget> budget_from(const std::vector<calib::NamedNumber>& nu
       budget.kinds[k].*each.member = named(std::string(each.prefix) + std::string(calib::row_error_kinds[k]));
     }
   }
-  budget.noise = named(std::string(noise_name));
-  budget.unperturbed = named(std::string(unperturbed_name));
-  budget.misfit_share = named(std::string(misfit_name));
+  for (const Number& each : budget_numbers) budget.*each.member = named(std::string(each.name));
   // As much as any session could have had, so that a number from anywhere is a count.
   budget.patterns = static_cast<std::int64_t>(std::min(named(std::string(patterns_name)), 1e15));
   return all_there ? std::optional(budget) : std::nullopt;
@@ -195,38 +208,32 @@ Figures figures_of(const ErrorBudget& budget) {
   Figures kinds;
   for (std::size_t k = 0; k < budget.kinds.size(); ++k) {
     const Kind& kind = budget.kinds[k];
-    kinds.add(calib::row_error_kinds[k], Figures{{"kappa", kind.kappa},
-                                                 {"row_error", kind.statistical},
-                                                 {"row_error_stated", kind.stated},
-                                                 {"nmse", kind.nmse()}});
+    kinds.add(calib::row_error_kinds[k],
+              Figures{{"kappa", kind.kappa}, {"row_error", kind.row_error}, {"nmse", kind.nmse()}});
   }
-  const double others = budget.noise + budget.unperturbed;
-  return {{"nmse", budget.rows() + others},
-          {"nmse_rows", budget.rows()},
-          {"nmse_noise", budget.noise},
-          {"nmse_unperturbed", budget.unperturbed},
-          {"nmse_misfit_at_most", budget.misfit()},
-          {"misfit_share", budget.misfit_share},
-          {"largest", budget.largest()},
-          {"largest_kind", calib::row_error_kinds[budget.largest_kind()]},
-          {"patterns", budget.patterns},
-          {"nmse_with_twice_the_patterns", budget.rows_with_twice() + others},
+  const double others = budget.noise + budget.unperturbed + budget.misfit();
+  return {{"nmse", budget.rows() + others}, {"nmse_rows", budget.rows()},
+          {"nmse_noise", budget.noise},     {"nmse_unperturbed", budget.unperturbed},
+          {"nmse_misfit", budget.misfit()}, {"misfit_share", budget.misfit_share},
+          {"largest", budget.largest()},    {"largest_kind", calib::row_error_kinds[budget.largest_kind()]},
+          {"patterns", budget.patterns},    {"nmse_with_twice_the_patterns", budget.rows_with_twice() + others},
           {"kinds", std::move(kinds)}};
 }
 
 std::string budget_parts(const std::string& key) {
   return fmt::format(
-      "NMSE about {{{0}.nmse:2}} ({{{0}.nmse_rows:2}} by the rows, mostly {{{0}.largest_kind}}; {{{0}.nmse_noise:2}} "
+      "NMSE about {{{0}.nmse:2}}: {{{0}.nmse_rows:2}} by the rows (mostly {{{0}.largest_kind}}), {{{0}.nmse_misfit:2}} "
       "by "
-      "noise; {{{0}.nmse_unperturbed:2}} without either), and at most {{{0}.nmse_misfit_at_most:2}} more by misfit "
-      "({{{0}.misfit_share:2%|none}} of the rows)",
+      "misfit (of {{{0}.misfit_share:2%|none}} of them), {{{0}.nmse_noise:2}} by noise, {{{0}.nmse_unperturbed:2}} "
+      "without "
+      "any of these",
       key);
 }
 
 std::string budget_outlook(const std::string& key) {
   return fmt::format(
       "largest: {{{0}.largest}}; {{{0}.patterns}} more patterns: NMSE about {{{0}.nmse:2}} -> "
-      "{{{0}.nmse_with_twice_the_patterns:2}}, misfit stays",
+      "{{{0}.nmse_with_twice_the_patterns:2}}",
       key);
 }
 

@@ -20,9 +20,7 @@ hal::Result<SessionEstimate> estimate_session(calib::EyeFile& file, const calib:
   calib::EstimateSettings settings;
   settings.threads = request.threads;
   made.rows = TRY(calib::estimate_response(taken.captures, noise, eye.geometry, plane, settings, progress));
-  if (request.budget) {
-    made.budget = TRY(request.budget(made.rows, static_cast<std::int64_t>(taken.captures.frames.size())));
-  }
+  if (request.budget) made.budget = TRY(request.budget(made.rows, taken.captures.frames));
   EstimateOrigin origin;
   if (made.budget) origin.kappas = numbers_of(*made.budget);
   origin.sessions = {session.id};

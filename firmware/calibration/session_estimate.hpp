@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "calib/emva1288.hpp"
@@ -19,9 +20,10 @@ struct EstimateRequest {
   std::string program;      ///< version
   std::int64_t now_unix_s = 0;
   int threads = 1;
-  /// What the errors of such rows, from so many patterns, do to a picture: stored with them. May be none.
-  std::function<hal::Result<std::optional<ErrorBudget>>(const calib::ResponseEstimate&, std::int64_t patterns)> budget =
-      {};
+  /// What the errors of such rows, from patterns of so many frames each, do to a picture: stored with them. May be
+  /// none.
+  std::function<hal::Result<std::optional<ErrorBudget>>(const calib::ResponseEstimate&, std::span<const double> frames)>
+      budget = {};
 };
 
 struct SessionEstimate {

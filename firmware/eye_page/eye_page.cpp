@@ -30,18 +30,6 @@ nav a { margin-right: 1em; } a { color: #005a94; }
 @media print { section { break-inside: avoid; } nav, details { display: none; } body { font-size: 12px; margin: 0; } }
 )";
 
-/// Also what a plot needs by itself, taken out of the page.
-constexpr std::string_view plot_style = R"(
-svg.plot text { font: 12.5px system-ui, sans-serif; fill: #1a1a1a; }
-svg.plot text.label { font-size: 13.5px; }
-svg.plot .small text { font-size: 11.5px; }
-svg.plot .paper { fill: #eff3f7; }
-svg.plot .axes path { stroke: #d0d0d0; stroke-width: 1; fill: none; }
-svg.plot .frame, svg.plot .axes .frame { stroke: #333; stroke-width: 1; fill: none; }
-svg.plot .band { fill-opacity: .2; stroke: none; }
-svg.plot .curve { fill: none; stroke-width: 2; }
-)";
-
 /// The file at a glance.
 std::string summary(const PageData& data) {
   const calib::EyeIdentity& eye = data.eye;
@@ -80,8 +68,8 @@ hal::Result<std::string> eye_page(const PageData& data) {
   std::string out =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-      title + "</title>\n<style>" + std::string(style) + std::string(plot_style) + "</style>\n</head>\n<body>\n<h1>" +
-      title + "</h1>\n<p>" + escaped(data.file) + "</p>\n<p>" + escaped(summary(data)) + "</p>\n<nav>";
+      title + "</title>\n<style>" + std::string(style) + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n<p>" +
+      escaped(data.file) + "</p>\n<p>" + escaped(summary(data)) + "</p>\n<nav>";
   for (const PageSection& section : page_sections()) {
     out += fmt::format("<a href=\"#{}\">{}</a>\n", section.id, escaped(section.title));
   }

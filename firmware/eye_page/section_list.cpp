@@ -14,10 +14,10 @@ constexpr std::array<PageSection, 12> sections{{
      "a converter, and marks that crowd at one side are light that does not get there.",
      "No estimate says what the channels are.", channel_states},
     {"budget", "What a picture is off by",
-     "The largest part is what to work on: rows become better by more patterns, but for their misfit; noise by light "
-     "and "
-     "exposure; what is left without either by nothing but another eye. All of it is an estimate, for the board's own "
-     "scene and solver.",
+     "The largest part is what to work on: rows become better by more patterns, misfit does not; noise goes down with "
+     "light "
+     "and exposure; what is left without any of these, with another eye. All of it is an estimate, good to a factor of "
+     "three, for the board's own scene and solver.",
      "No estimate in this file was asked what its errors do to pictures.", error_budget_table},
     {"light", "Light from each pixel",
      "How much of every pixel of the object plane all ommatidia see together. It should fall off evenly towards the "

@@ -20,6 +20,7 @@ using namespace compueye::firmware;
 
 namespace {
 
+const std::vector<double> frames(100, 2.0);
 constexpr double gain_error = 2e-3;  // about what noise does
 
 /// The nominal rows, said to be off by their gains alone, and to be off by half of that with twice the patterns.
@@ -34,9 +35,9 @@ calib::ResponseEstimate with_gain_errors(const Board& board) {
       row.sigmas.push_back(static_cast<float>(3.0 * gain_error * v));
     });
     row.inflation = 3.0;
+    row.held_out_chi2 = m % 2 == 0 ? 1.0 : 4001.0;
     row.errors.emplace();
-    row.errors->stated[0] = 3.0 * gain_error;
-    row.errors->statistical[0] = gain_error;
+    row.errors->now[0] = gain_error;
     row.errors->of_twice[0] = 0.5 * gain_error;
   }
   return estimate;
@@ -70,13 +71,15 @@ double nmse_with(const Board& board, double error) {
 TEST_CASE("a budget says what pictures by rows with such gains come to, and what twice the patterns take off") {
   const Board board = load_board(test::source_path("boards/sim-8x8")).value();
   const ErrorBudget budget =
-      error_budget(board, with_gain_errors(board), 100, [](auto, double, double) { return true; }).value();
+      error_budget(board, with_gain_errors(board), frames, [](auto, double, double) { return true; }).value();
   const double without = nmse_with(board, 0.0), added = nmse_with(board, gain_error) - without;
   CHECK(budget.unperturbed == doctest::Approx(without).epsilon(1e-3));
   CHECK(budget.rows() > 0.5 * added);
   CHECK(budget.rows() < 2.0 * added);
   CHECK(budget.rows_with_twice() == doctest::Approx(0.25 * budget.rows()));
-  CHECK(budget.misfit() == doctest::Approx(8.0 * budget.rows()));
+  // Half of the rows leave four thousand times the noise of two frames.
+  CHECK(budget.misfit() == doctest::Approx(1000.0 * budget.noise - budget.rows()));
+  CHECK(budget.patterns == 100);
   CHECK(budget.misfit_share == 1.0);
   CHECK(budget.largest() == "misfit");
   CHECK(budget.largest_kind() == 0);
@@ -86,9 +89,10 @@ TEST_CASE("a budget says what pictures by rows with such gains come to, and what
 TEST_CASE("a budget comes back from an estimate's figures, whole or not at all") {
   ErrorBudget budget;
   double next = 0.5;
-  for (ErrorBudget::Kind& kind : budget.kinds) kind = {next += 1.0, next += 1.0, next += 1.0, next += 1.0};
+  for (ErrorBudget::Kind& kind : budget.kinds) kind = {next += 1.0, next += 1.0, next += 1.0};
   budget.noise = 1e-3;
   budget.unperturbed = 2e-3;
+  budget.surplus = 3.5;
   budget.misfit_share = 0.125;
   budget.patterns = 256;
   std::vector<calib::NamedNumber> numbers = numbers_of(budget);
@@ -104,7 +108,7 @@ TEST_CASE("rows that do not tell their errors by kind have no budget") {
   const Board board = load_board(test::source_path("boards/sim-8x8")).value();
   calib::ResponseEstimate rows = with_gain_errors(board);
   for (calib::RowEstimate& row : rows.rows) row.errors.reset();
-  const auto budget = error_budget(board, rows, 100, {});
+  const auto budget = error_budget(board, rows, frames, {});
   REQUIRE_FALSE(budget.has_value());
   CHECK(budget.error().code == hal::ErrorCode::usage);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
@@ -154,13 +155,13 @@ Result<Figures> report_of(const CalibrateRequest& o, const calib::SessionProgres
 
 /// What the report says of how good pictures are going to be. An eye without it is as good.
 Result<std::optional<ErrorBudget>> budget_of(const CalibrateRequest& o, const Board& board,
-                                             const calib::ResponseEstimate& rows, std::int64_t patterns,
+                                             const calib::ResponseEstimate& rows, std::span<const double> frames,
                                              Session& session) {
   if (board.object.pixels() > most_budget_pixels && !o.budget) {
     session.note("what errors of the rows do to pictures is left out, since it takes minutes; --budget tells");
     return std::optional<ErrorBudget>();
   }
-  auto made = error_budget(board, rows, patterns, session.progress());
+  auto made = error_budget(board, rows, frames, session.progress());
   if (made) return std::optional(*made);
   TRY(session.check_stop());
   session.note("what errors of the rows do to pictures is not known: " + made.error().text());
@@ -207,8 +208,8 @@ Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   wanted.program = COMPUEYE_VERSION;
   wanted.now_unix_s = now_unix_s();
   wanted.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
-  wanted.budget = [&](const calib::ResponseEstimate& rows, std::int64_t patterns) {
-    return budget_of(o, board, rows, patterns, session);
+  wanted.budget = [&](const calib::ResponseEstimate& rows, std::span<const double> frames) {
+    return budget_of(o, board, rows, frames, session);
   };
   const SessionEstimate made = TRY(estimate_session(file, done, wanted, session.progress()));
   session.end_progress();

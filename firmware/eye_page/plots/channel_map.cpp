@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include "firmware/eye_page/plots/markup.hpp"
+#include "firmware/eye_page/plots/svg_element.hpp"
 #include "firmware/eye_page/plots/tone_picture.hpp"
 #include "hal/try.hpp"
 
@@ -127,10 +127,8 @@ class Drawing {
 hal::Result<std::string> channel_map(const std::string& id, const std::string& about, const ChannelMap& map) {
   const Drawing drawing(map);
   const ToneScale scale = ToneScale::by_decades(map.values);
-  std::string out = fmt::format(
-      "<svg id=\"{}\" class=\"plot\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 760 {:.0f}\" role=\"img\" "
-      "aria-label=\"{}\">\n",
-      escaped(id), top + drawing.height() + 52.0, escaped(about));
+  constexpr double width = 760.0;
+  std::string out = svg_opening(id, width, top + drawing.height() + 52.0, about);
   out += TRY(drawing.values(scale)) + drawing.axes() + drawing.marked();
   const double beside = left + drawing.width() + 28.0;
   const bool toned = !map.values.empty();

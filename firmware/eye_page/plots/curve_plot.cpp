@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "firmware/eye_page/plots/markup.hpp"
+#include "firmware/eye_page/plots/svg_element.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -107,10 +108,7 @@ std::string curve_plot(const std::string& id, const std::string& about, Axis x, 
   x.settle();
   y.settle();
   const Drawing drawing(x, y);
-  std::string out = fmt::format(
-      "<svg id=\"{}\" class=\"plot\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" role=\"img\" "
-      "aria-label=\"{}\">\n",
-      escaped(id), width, height, escaped(about));
+  std::string out = svg_opening(id, width, height, about);
   for (std::size_t c = 0; c < curves.size(); ++c) out += drawing.band(curves[c], looks[c % looks.size()]);
   out += drawing.frame();
   for (std::size_t c = 0; c < curves.size(); ++c) out += drawing.line(curves[c], looks[c % looks.size()]);

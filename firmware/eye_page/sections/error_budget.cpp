@@ -14,17 +14,16 @@ hal::Result<std::string> error_budget_table(const PageData& data) {
   for (std::size_t k = 0; k < budget->kinds.size(); ++k) {
     const ErrorBudget::Kind& kind = budget->kinds[k];
     rows.push_back({"rows: " + std::string(calib::row_error_kinds[k]), significant(kind.kappa, 2),
-                    significant(100.0 * kind.statistical, 2), significant(kind.nmse(), 2),
+                    significant(100.0 * kind.row_error, 2), significant(kind.nmse(), 2),
                     significant(kind.kappa * kind.of_twice * kind.of_twice, 2)});
   }
-  const auto unchanged = [&](const std::string& what, double nmse, const std::string& before) {
-    const std::string text = before + significant(nmse, 2);
-    rows.push_back({what, "", "", text, text});
+  const auto unchanged = [&](const std::string& what, double nmse) {
+    rows.push_back({what, "", "", significant(nmse, 2), significant(nmse, 2)});
   };
-  unchanged(fmt::format("rows: misfit ({} % of them)", significant(100.0 * budget->misfit_share, 2)), budget->misfit(),
-            "at most ");
-  unchanged("noise", budget->noise, "");
-  unchanged("without either", budget->unperturbed, "");
+  unchanged(fmt::format("misfit (of {} % of the rows)", significant(100.0 * budget->misfit_share, 2)),
+            budget->misfit());
+  unchanged("noise", budget->noise);
+  unchanged("without any of these", budget->unperturbed);
   Figures figures;
   figures.add("budget", figures_of(*budget));
   return "<p class=\"figures\">" + escaped(figures.sentence(budget_parts("budget"))) + "<br>" +

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "firmware/eye_page/plots/axis.hpp"
-#include "firmware/eye_page/plots/markup.hpp"
+#include "firmware/eye_page/plots/svg_element.hpp"
 #include "firmware/eye_page/plots/tone_picture.hpp"
 #include "firmware/eye_page/sections/sections.hpp"
 #include "firmware/text/number_text.hpp"
@@ -52,12 +52,7 @@ bool of_plane(const PageData& data) {
   return data.newest && data.newest->rows.response.cols() == data.eye.plane.pixels();
 }
 
-std::string opening(std::string_view id, double height, const std::string& about) {
-  return fmt::format(
-      "<svg id=\"{}\" class=\"plot\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 720 {:.0f}\" role=\"img\" "
-      "aria-label=\"{}\">\n",
-      id, height, escaped(about));
-}
+constexpr double page_width = 720.0;
 
 }  // namespace
 
@@ -76,7 +71,7 @@ Result<std::string> light_map(const PageData& data) {
                                         seeing.size(), significant(*least, 3), significant(*most, 3));
   constexpr double side = 400.0, left = 80.0, above = 20.0;
   const double scale = side / std::max(plane.rows, plane.cols), width = scale * plane.cols, height = scale * plane.rows;
-  std::string out = opening("light-map", above + height + 52.0, about);
+  std::string out = svg_opening("light-map", page_width, above + height + 52.0, about);
   out += image_element(left, above, width, height, TRY(tone_picture(plane.rows, plane.cols, light, tones)));
   out += pixel_axes(plane, left, above, width, height);
   out += tone_bar("light-map", left + width + 28.0, above, height, tones, "times that a pixel is seen");
@@ -93,8 +88,8 @@ Result<std::string> receptive_fields(const PageData& data) {
   const std::size_t shown = std::min(most, seeing.size());
   const double scale = side / std::max(plane.rows, plane.cols), width = scale * plane.cols, height = scale * plane.rows;
   const auto lines = static_cast<double>((shown + across - 1) / across);
-  std::string out = opening("field-pictures", lines * (height + 40.0) + 8.0,
-                            fmt::format("{} of {} receptive fields on the object plane", shown, seeing.size()));
+  std::string out = svg_opening("field-pictures", page_width, lines * (height + 40.0) + 8.0,
+                                fmt::format("{} of {} receptive fields on the object plane", shown, seeing.size()));
   for (std::size_t s = 0; s < shown; ++s) {
     const int m = seeing[(2 * s + 1) * seeing.size() / (2 * shown)];
     std::vector<double> row(static_cast<std::size_t>(plane.pixels()), 0.0);

@@ -159,17 +159,16 @@ TEST_CASE("calib: errors by kind add up to what sigmas state, and gains are off 
       along += value * (value - eye().row(static_cast<int>(m))[row.columns[e]]);
     }
     for (std::size_t k = 0; k < calib::row_error_kinds.size(); ++k) {
-      by_kind += row.errors->stated[k] * row.errors->stated[k];
-      CHECK(row.errors->statistical[k] * row.inflation == doctest::Approx(row.errors->stated[k]));
+      by_kind += row.inflation * row.inflation * row.errors->now[k] * row.errors->now[k];
     }
     CHECK(by_kind == doctest::Approx(stated / norm).epsilon(1e-3));
     // What fields hide between their knots is in the rest, and no pattern takes it off.
     for (std::size_t k = 0; k < 3; ++k) {
-      CHECK(row.errors->of_twice[k] < row.errors->statistical[k]);
-      CHECK(row.errors->of_twice[k] > 0.6 * row.errors->statistical[k]);
+      CHECK(row.errors->of_twice[k] < row.errors->now[k]);
+      CHECK(row.errors->of_twice[k] > 0.6 * row.errors->now[k]);
     }
     off.push_back(std::abs(along / norm));
-    said.push_back(row.errors->stated[0]);
+    said.push_back(row.inflation * row.errors->now[0]);
   }
   // Half of normal numbers are within .67 of their sigma; a few rows tell that roughly.
   CHECK(calib::median(off) < 2.0 * 0.67 * calib::median(said));
