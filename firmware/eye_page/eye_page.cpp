@@ -22,7 +22,7 @@ h1 { font-size: 1.7em; margin-bottom: 0; } h2 { font-size: 1.2em; margin: 2.2em 
 table { border-collapse: collapse; margin: .6em 0 1em; font-size: .9em; }
 th, td { text-align: left; padding: .2em .8em .2em 0; border-bottom: 1px solid #ddd; vertical-align: top;
   unicode-bidi: isolate; overflow-wrap: anywhere; }
-.number { text-align: right; font-variant-numeric: tabular-nums; }
+.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 svg.plot { display: block; width: 100%; max-width: 720px; height: auto; margin: .5em 0; }
 .figures { font-weight: 600; margin: .3em 0; } .look-for, .missing { color: #444; margin: .3em 0; }
 pre { background: #f4f4f4; padding: .6em; overflow-x: auto; }

@@ -49,6 +49,13 @@ std::string png_data_uri(std::span<const std::byte> png) {
   return out;
 }
 
+std::string figures_line(std::string_view sentence) {
+  std::string text(sentence);
+  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z')
+    text.front() = static_cast<char>(text.front() - 'a' + 'A');
+  return "<p class=\"figures\">" + escaped(text) + ".</p>\n";
+}
+
 std::string html_table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows,
                        std::size_t numbers) {
   std::string out = "<table><thead><tr>";

@@ -24,7 +24,8 @@ svg.plot .curve { fill: none; stroke-width: 2; }
 
 std::string svg_opening(const std::string& id, double width, double height, const std::string& about) {
   return fmt::format(
-      "<svg id=\"{}\" class=\"plot\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" "
+      "<svg id=\"{}\" class=\"plot\" xmlns=\"http://www.w3.org/2000/svg\" "
+      "xmlns:xlink=\"http://www.w3.org/1999/xlink\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" "
       "aria-label=\"{}\">\n<style>{}</style>\n",
       escaped(id), width, height, escaped(about), style);
 }

@@ -64,7 +64,7 @@ hal::Result<std::string> tone_picture(int rows, int cols, const std::vector<doub
 std::string image_element(double x, double y, double width, double height, const std::string& uri) {
   return fmt::format(
       "<image x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" preserveAspectRatio=\"none\" "
-      "style=\"image-rendering:pixelated\" href=\"{}\"/>",
+      "style=\"image-rendering:pixelated\" xlink:href=\"{}\"/>",
       x, y, width, height, uri);
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "firmware/eye_page/plots/channel_map.hpp"
+#include "firmware/eye_page/plots/markup.hpp"
 #include "firmware/eye_page/plots/spread.hpp"
 #include "firmware/eye_page/sections/sections.hpp"
 #include "firmware/text/number_text.hpp"
@@ -32,7 +33,7 @@ Result<std::string> toned(const std::string& id, const std::string& what, const 
   const std::string about = fmt::format("{}: median {}{}, nine tenths of {} ommatidia from {}{} to {}{}", what,
                                         significant(spread->median, 3), unit, spread->count,
                                         significant(spread->low, 3), unit, significant(spread->high, 3), unit);
-  return TRY(channel_map(id, about, map)) + "<p class=\"figures\">" + about + ".</p>\n";
+  return TRY(channel_map(id, about, map)) + figures_line(about);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/eye_page/plots/curve_plot.hpp"
+#include "firmware/eye_page/plots/markup.hpp"
 #include "firmware/eye_page/sections/sections.hpp"
 #include "firmware/text/number_text.hpp"
 
@@ -51,7 +52,7 @@ hal::Result<std::string> drift_curve(const PageData& data) {
   }
   return curve_plot("drift-curve", about, empty_axis("device time since the session began, min"),
                     empty_axis("white against the first, %"), curves) +
-         "<p class=\"figures\">" + about + ".</p>\n";
+         figures_line(about);
 }
 
 }  // namespace compueye::firmware

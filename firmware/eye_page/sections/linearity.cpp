@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "firmware/eye_page/plots/curve_plot.hpp"
+#include "firmware/eye_page/plots/markup.hpp"
 #include "firmware/eye_page/sections/sections.hpp"
 #include "firmware/text/number_text.hpp"
 
@@ -35,7 +36,7 @@ hal::Result<std::string> linearity_curve(const PageData& data) {
                                               significant(worst, 3), tick_text(at));
   return curve_plot("linearity-curve", about, empty_axis("code, LSB"), empty_axis("off a straight line, LSB"),
                     {curve}) +
-         "<p class=\"figures\">" + about + ".</p>\n";
+         figures_line(about);
 }
 
 }  // namespace compueye::firmware

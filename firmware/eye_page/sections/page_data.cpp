@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <utility>
 
+#include "calib/session/capture_schedule.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -15,7 +15,6 @@ using calib::Capture;
 using hal::Result;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::string_view dark_stage = "dark", white_stage = "reference";
 
 StageCounts& counts_of(PageSession& session, const std::string& stage) {
   const auto is = [&](const StageCounts& each) { return each.stage == stage; };
@@ -73,13 +72,13 @@ Result<PageSession> session_of(const calib::EyeFile& file, calib::StoredSession 
   while (const auto capture = TRY(reader.next())) {
     count(*capture, session);
     const double at = minutes.of(*capture);
-    if (capture->stage == dark_stage) {
+    if (capture->stage == name(calib::Stage::dark)) {
       darks += 1.0;
       for (std::size_t m = 0; m < channels; ++m) {
         dark[m] += static_cast<double>(capture->codes[m]) / capture->frames;
       }
     }
-    if (capture->stage == white_stage) session.whites.push_back({at, mean_frame(*capture)});
+    if (capture->stage == name(calib::Stage::reference)) session.whites.push_back({at, mean_frame(*capture)});
   }
   for (WhiteCapture& white : session.whites) {
     for (std::size_t m = 0; m < channels; ++m) white.signal_lsb[m] -= darks > 0.0 ? dark[m] / darks : 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/eye_page/plots/axis.hpp"
+#include "firmware/eye_page/plots/markup.hpp"
 #include "firmware/eye_page/plots/svg_element.hpp"
 #include "firmware/eye_page/plots/tone_picture.hpp"
 #include "firmware/eye_page/sections/sections.hpp"
@@ -75,7 +76,7 @@ Result<std::string> light_map(const PageData& data) {
   out += image_element(left, above, width, height, TRY(tone_picture(plane.rows, plane.cols, light, tones)));
   out += pixel_axes(plane, left, above, width, height);
   out += tone_bar("light-map", left + width + 28.0, above, height, tones, "times that a pixel is seen");
-  return out + "</svg>\n<p class=\"figures\">" + about + ".</p>\n";
+  return out + "</svg>\n" + figures_line(about);
 }
 
 Result<std::string> receptive_fields(const PageData& data) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "firmware/eye_page/plots/markup.hpp"
@@ -33,6 +34,8 @@ std::string words_of(const std::string& name) {
   return found != figures.end() ? std::string(found->words) : name;
 }
 
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
 std::string told(double value) {
   return std::isfinite(value) ? significant(value, 4) : "not determined";
 }
@@ -52,13 +55,14 @@ hal::Result<std::string> sensor_table(const PageData& data) {
     const calib::NamedColumn* column = column_of(name);
     const auto spread = column != nullptr ? spread_of(column->values) : std::nullopt;
     const auto each = [&](double Spread::*member) {
-      return spread ? significant((*spread).*member, 4) : "not determined";
+      return spread ? significant((*spread).*member, 4) : std::string();
     };
-    rows.push_back(column == nullptr
-                       ? std::vector<std::string>{words_of(name), of_all, "", "", "", ""}
-                       : std::vector<std::string>{
-                             words_of(name), of_all, each(&Spread::median), each(&Spread::low), each(&Spread::high),
-                             fmt::format("{} of {}", spread ? spread->count : 0, estimate.status.size())});
+    rows.push_back(
+        column == nullptr
+            ? std::vector<std::string>{words_of(name), of_all, "", "", "", ""}
+            : std::vector<std::string>{words_of(name), of_all, told(spread ? spread->median : unknown),
+                                       each(&Spread::low), each(&Spread::high),
+                                       fmt::format("{} of {}", spread ? spread->count : 0, estimate.status.size())});
   };
   for (const calib::NamedNumber& number : estimate.sensor) add(number.name, told(number.value));
   for (const calib::NamedColumn& column : estimate.channel_sensor) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -160,6 +161,9 @@ TEST_CASE("inspect --html writes one page, whole or not at all, of eye files alo
   CHECK(page.ends_with("</html>\n"));
   CHECK(page.find("63 good: no mark") != std::string::npos);
   check_refused(problem, "inspect A.npy --html z.html", ErrorCode::usage, "--html", {"A.npy", ".eye"});
+  check_refused(problem, "inspect F.eye --html F.eye", ErrorCode::usage, "--html", {"F.eye"});
+  std::filesystem::create_hard_link(folder / "F.eye", folder / "link.html");
+  check_refused(problem, "inspect F.eye --html link.html", ErrorCode::usage, "--html", {"link.html"});
   check_refused(problem, "inspect F.eye --html none/z.html", ErrorCode::not_found, "none/z.html", {});
   check_refused(problem, "inspect F.eye --html /dev/full", ErrorCode::no_space, "/dev/full", {});
   CHECK(run_compueye("inspect F.eye --html -", folder.path()).out == page);
