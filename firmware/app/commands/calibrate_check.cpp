@@ -39,26 +39,28 @@ std::string list_of(const std::vector<calib::ChangedChannel>& channels) {
 Figures check_report(const std::string& file, const EyeCheck& check, const calib::EyeChange& change) {
   Value::List channels;
   for (const calib::ChangedChannel& each : change.channels) channels.emplace_back(figures_of(each));
-  Figures f{
-      {"file", file},
-      {"session", check.session()},
-      {"estimate", check.estimate()},
-      {"changed", change.changed()},
-      {"gain", Figures{{"changed", change.gain_changed},
-                       {"value", change.gain.value},
-                       {"sigma", change.gain.sigma},
-                       {"chance", change.gain.chance}}},
-      {"turn", Figures{{"changed", change.turned},
-                       {"deg", turn_deg(change)},
-                       {"about_x_deg", change.turn_rad[0] * degrees},
-                       {"about_y_deg", change.turn_rad[1] * degrees},
-                       {"about_z_deg", change.turn_rad[2] * degrees},
-                       {"sigma_x_deg", change.turn_sigma[0] * degrees},
-                       {"sigma_y_deg", change.turn_sigma[1] * degrees},
-                       {"sigma_z_deg", change.turn_sigma[2] * degrees},
-                       {"chance", change.turn_chance}}},
-      {"ommatidia", std::move(channels)},
-      {"rest", Figures{{"changed", change.rest_changed}, {"chi2", change.rest_chi2}, {"chance", change.rest_chance}}}};
+  Figures f{{"file", file},
+            {"session", check.session()},
+            {"estimate", check.estimate()},
+            {"changed", change.changed()},
+            {"gain", Figures{{"changed", change.gain_changed},
+                             {"value", change.gain.value},
+                             {"sigma", change.gain.sigma},
+                             {"chance", change.gain.chance}}},
+            {"turn", Figures{{"changed", change.turned},
+                             {"deg", turn_deg(change)},
+                             {"about_x_deg", change.turn_rad[0] * degrees},
+                             {"about_y_deg", change.turn_rad[1] * degrees},
+                             {"about_z_deg", change.turn_rad[2] * degrees},
+                             {"sigma_x_deg", change.turn_sigma[0] * degrees},
+                             {"sigma_y_deg", change.turn_sigma[1] * degrees},
+                             {"sigma_z_deg", change.turn_sigma[2] * degrees},
+                             {"chance", change.turn_chance}}},
+            {"ommatidia", std::move(channels)},
+            {"rest", Figures{{"changed", change.rest_changed},
+                             {"chi2", change.rest_chi2},
+                             {"share", change.rest_share},
+                             {"chance", change.rest_chance}}}};
   f.tell("{file}: four frames against session {session}\n");
   f.say(fmt::format("gain: {:+.2f} % (one sigma: {:.2f} %): {}\n", 100.0 * change.gain.value, 100.0 * change.gain.sigma,
                     change.gain_changed ? "changed" : "as it was"));
@@ -67,8 +69,8 @@ Figures check_report(const std::string& file, const EyeCheck& check, const calib
                     change.turned ? "changed" : "as it was"));
   f.say(change.channels.empty() ? "ommatidia: none stands out\n"
                                 : fmt::format("ommatidia: {}\n", list_of(change.channels)));
-  f.say(fmt::format("the rest: chi^2 {:.2f} a sample: {}\n", change.rest_chi2,
-                    change.rest_changed ? "more than noise" : "noise"));
+  f.say(fmt::format("the rest: {:.2f} % of the light beyond noise (chi^2 {:.2f} a sample): {}\n",
+                    100.0 * change.rest_share, change.rest_chi2, change.rest_changed ? "changed" : "as it was"));
   return f;
 }
 

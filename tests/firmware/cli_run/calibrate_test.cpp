@@ -62,6 +62,19 @@ TEST_CASE("what a session measured is estimated by --resume where a stop came be
   const Ended run = test::compueye({"run", "--board", path, "--eye", eye, "--frames", "5", "--lossless", "--json"});
   REQUIRE_MESSAGE(run.exit_code == 0, run.err);
   CHECK(nlohmann::json::parse(run.out)["quality"]["nmse"].get<double>() < 0.05);
+  // Before the light that it was calibrated with it is as it was; a display whose black shines is not that light.
+  const std::vector<std::string> check{"calibrate", "--board", path, "--eye", eye, "--check", "--seed", "3"};
+  const Ended same = test::compueye(check);
+  CHECK_MESSAGE(same.exit_code == 0, same.err);
+  CHECK(contains(same.out, "ommatidia: none stands out"));
+  const auto other = board.outside("other.toml");
+  std::ofstream(other) << "[display]\nblack_level = 0.01\n[[surface]]\npicture = \"fig2\"\nshines = true\n";
+  std::vector<std::string> changed = check;
+  changed.insert(changed.end(), {"--scene", other.string(), "--json"});
+  const Ended shining = test::compueye(changed);
+  CHECK(shining.exit_code == 1);
+  CHECK(contains(shining.err, "has changed"));
+  CHECK(nlohmann::json::parse(shining.out)["gain"]["value"].get<double>() > 0.001);
   // Another distance goes into the same file, and neither stands for the other.
   const auto plan = board.outside("p.toml");
   std::ofstream(plan) << short_plan;
