@@ -96,14 +96,17 @@ class Fit {
       change.turn_sigma[a] = std::sqrt(of_turn(axis, axis));
     }
     change.turn_chance = chance_of_three(turn.dot(of_turn.ldlt().solve(turn)));
-    double chi2 = 0.0, count = -static_cast<double>(x_.size());
+    double chi2 = 0.0, count = -static_cast<double>(x_.size()), excess = 0.0, light = 0.0;
     for (std::size_t at = 0; at < s_.then.size(); ++at) {
       if (in_[at % width_] == 0 || !usable(at)) continue;
       chi2 += left(at) * left(at) / variance(at);
+      excess += left(at) * left(at) - variance(at);
+      light += s_.then[at] * s_.then[at];
       count += 1.0;
     }
     if (count < 1.0) return;
     change.rest_chi2 = chi2 / count;
+    change.rest_share = std::sqrt(std::max(excess, 0.0) / light);
     // A noise that was measured by 64 frames is known to a tenth.
     constexpr double known_to = 1.1;
     change.rest_chance = chance_of_many(chi2 / (known_to * known_to), count);
@@ -178,7 +181,8 @@ void find_channels(Fit& fit, std::size_t judged, EyeChange& change) {
       const Tested tested = fit.own(m);
       const double ratio = std::fabs(tested.value) / tested.sigma;
       const double worst_ratio = worst.channel < 0 ? 0.0 : std::fabs(worst.change.value) / worst.change.sigma;
-      if (tested.chance < each && ratio > worst_ratio) worst = {static_cast<int>(m), tested};
+      const bool stands_out = tested.chance < each && std::fabs(tested.value) > LeastChange::channel;
+      if (stands_out && ratio > worst_ratio) worst = {static_cast<int>(m), tested};
     }
     if (worst.channel < 0) return;
     fit.take_out(static_cast<std::size_t>(worst.channel));
@@ -213,9 +217,10 @@ Result<EyeChange> eye_change(const CheckSamples& samples) {
   for (ChangedChannel& each : change.channels) each.change = fit.own(static_cast<std::size_t>(each.channel));
   std::ranges::sort(change.channels, {}, &ChangedChannel::channel);
   fit.tell(change);
-  change.gain_changed = change.gain.chance < question;
-  change.turned = change.turn_chance < question;
-  change.rest_changed = change.rest_chance < question;
+  const auto& turn = change.turn_rad;
+  change.gain_changed = change.gain.chance < question && std::fabs(change.gain.value) > LeastChange::gain;
+  change.turned = change.turn_chance < question && std::hypot(turn[0], turn[1], turn[2]) > LeastChange::turn_rad;
+  change.rest_changed = change.rest_chance < question && change.rest_share > LeastChange::rest;
   return change;
 }
 

@@ -37,10 +37,19 @@ struct EyeChange {
   double turn_chance = 1.0;              ///< of all three together
   std::vector<ChangedChannel> channels;  ///< those that changed, ascending
   double rest_chi2 = 0.0;                ///< a sample, of what all this leaves of the channels that did not
+  double rest_share = 0.0;               ///< of that, what noise does not explain, rms, relative to the light
   double rest_chance = 1.0;
 
   bool gain_changed = false, turned = false, rest_changed = false;
   [[nodiscard]] bool changed() const noexcept { return gain_changed || turned || rest_changed || !channels.empty(); }
+};
+
+/// What is smaller changes no picture, however certain it is: with 16 bits noise is a thousandth of these.
+struct LeastChange {
+  static constexpr double gain = 5e-4;         ///< relative
+  static constexpr double turn_rad = 1.75e-4;  ///< 0.01 degrees
+  static constexpr double channel = 5e-3;      ///< of one ommatidium, relative
+  static constexpr double rest = 2e-3;         ///< of what is left, relative to the light, rms
 };
 
 /// False alarms a check: at most this share, each of its four questions taking a quarter of it.

@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "calib/estimate/captures.hpp"
 #include "calib/estimate/field_strengths.hpp"
+#include "calib/estimate/row_errors.hpp"
 #include "calib/estimate/row_parameters.hpp"
 #include "calib/estimate/status_limits.hpp"
 #include "calib/nominal.hpp"
@@ -39,6 +41,7 @@ struct RowEstimate {
   FieldStrengths strengths{};               ///< as chosen
   double held_out_chi2 = 0.0;               ///< a point, of a fit without those patterns; 0: not judged
   double inflation = 1.0;                   ///< what sigmas were multiplied by to match it
+  std::optional<RowErrors> errors;          ///< of some rows, evenly spread; nothing by least squares
   std::vector<std::int32_t> columns;        ///< ascending
   std::vector<float> values;                ///< a column each, > 0, in fully seen white pixels
   std::vector<float> sigmas;                ///< a column each, one standard deviation

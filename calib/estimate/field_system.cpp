@@ -164,12 +164,16 @@ FieldSystem::Score FieldSystem::score(const FieldStrengths& strengths) const {
   return score;
 }
 
-FieldSystem::Solution FieldSystem::solve(const FieldStrengths& strengths) const {
+FieldSystem::Solution FieldSystem::solve(const FieldStrengths& strengths, bool of_twice) const {
   const Unknowns of = unknowns(strengths);
   Settled fit = settled(normal_all_, right_all_, of);
   Solution found;
   found.mean = std::move(fit.mean);
-  found.covariance = fit.factor.solve(Eigen::MatrixXd::Identity(found.mean.size(), found.mean.size()));
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(found.mean.size(), found.mean.size());
+  found.covariance = fit.factor.solve(identity);
+  if (of_twice) {
+    found.covariance_of_twice = settled(2.0 * normal_all_, 2.0 * right_all_, of).factor.solve(identity);
+  }
   std::vector<int> at(static_cast<std::size_t>(slopes_.cols()), -1);
   for (std::size_t c = 0; c < of.index.size(); ++c) at[static_cast<std::size_t>(of.index[c])] = static_cast<int>(c);
   for (std::size_t f = 0; f < field_kinds; ++f) {

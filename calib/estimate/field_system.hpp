@@ -31,9 +31,10 @@ class FieldSystem {
   struct Solution {
     Eigen::VectorXd mean;
     Eigen::MatrixXd covariance;
+    Eigen::MatrixXd covariance_of_twice;              ///< had there been each pattern twice; empty: not asked for
     std::array<std::vector<int>, field_kinds> place;  ///< of each knot of the grid in the unknowns; -1: not among them
   };
-  [[nodiscard]] Solution solve(const FieldStrengths& strengths) const;
+  [[nodiscard]] Solution solve(const FieldStrengths& strengths, bool of_twice) const;
 
  private:
   struct Unknowns {

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
+
+#include "calib/estimate/entry_gradient.hpp"
+#include "calib/estimate/row_error_sum.hpp"
 
 namespace compueye::calib {
 namespace {
@@ -12,6 +16,8 @@ constexpr std::size_t most_tried = 3;
 /// Of the roughness of a field at its knots, rms: what coverage of simulated eyes asks for (docs/calibration.md).
 constexpr double hidden_share = 0.02, hidden_at_px = 4.0;
 constexpr double least_entry = 1e-3;
+/// Rows whose errors are told by kind, about: it costs as much as their entries.
+constexpr int most_telling = 512;
 
 /// Variance of what a field hides between its knots, where no blob shows it: it is taken to be as rough as the field
 /// itself is from one knot to its neighbours, in the share that `hidden_share` says.
@@ -30,51 +36,14 @@ double hidden_variance(const std::vector<float>& field, const KnotGrid& grid) {
   return share * share * squares / std::max(knots, 1.0);
 }
 
-/// A pixel's entry by each unknown of a solution: which of them count, and how much.
-struct Gradient {
-  std::vector<int> place;
-  std::vector<double> value;
-
-  void add(int at, double by) {
-    if (at < 0 || by == 0.0) return;
-    place.push_back(at);
-    value.push_back(by);
-  }
-  [[nodiscard]] double variance(const Eigen::MatrixXd& covariance) const {
-    double sum = 0.0;
-    for (std::size_t a = 0; a < place.size(); ++a) {
-      double row = 0.5 * value[a] * covariance(place[a], place[a]);
-      for (std::size_t b = 0; b < a; ++b) row += value[b] * covariance(place[b], place[a]);
-      sum += 2.0 * value[a] * row;
-    }
-    return std::max(sum, 0.0);
-  }
-};
-
-Gradient gradient_of(const RowSupport& support, std::size_t j, const RowParameters& parameters,
-                     const FieldSystem::Solution& solution, int plane_cols) {
-  Gradient gradient;
+/// By the cone's parameters but the gain, which is left out: only the direction counts.
+std::array<double, ConeRow::changes> changes_at(const RowSupport& support, std::size_t j) {
+  std::array<double, ConeRow::changes> changes{};
   const std::int32_t in_cone = support.in_cone[j];
-  if (in_cone >= 0) {
-    for (std::size_t d = 0; d < ConeRow::changes; ++d) {
-      gradient.add(static_cast<int>(d),
-                   parameters.cone.gain * support.cone.change[d][static_cast<std::size_t>(in_cone)]);
-    }
-    gradient.add(4, support.envelope[0][j]);
+  for (std::size_t d = 0; d < changes.size() && in_cone >= 0; ++d) {
+    changes[d] = support.cone.change[d][static_cast<std::size_t>(in_cone)];
   }
-  const KnotGrid& grid = parameters.grid;
-  const SplinesAt down = splines_at(support.pixels[j] / plane_cols, grid.first_row_px, grid.pitch_px, grid.rows);
-  const SplinesAt across = splines_at(support.pixels[j] % plane_cols, grid.first_col_px, grid.pitch_px, grid.cols);
-  for (std::size_t f = 0; f < field_kinds; ++f) {
-    for (int u = 0; u < down.count && !parameters.field[f].empty(); ++u) {
-      for (int v = 0; v < across.count; ++v) {
-        const auto knot = static_cast<std::size_t>((down.first + u) * grid.cols + across.first + v);
-        gradient.add(solution.place[f][knot], support.envelope[f][j] * down.value[static_cast<std::size_t>(u)] *
-                                                  across.value[static_cast<std::size_t>(v)]);
-      }
-    }
-  }
-  return gradient;
+  return changes;
 }
 
 }  // namespace
@@ -150,7 +119,7 @@ RowEstimate RowEstimator::estimate(int channel, const StrengthsTried& tried) {
     row.status = ChannelStatus::does_not_fit;
     return row;
   }
-  fill(channel, fields.solve(row.strengths), row);
+  fill(channel, fields.solve(row.strengths, tells_errors(channel)), row);
   return row;
 }
 
@@ -178,6 +147,10 @@ void RowEstimator::choose(const FieldSystem& fields, const StrengthsTried& tried
   row.inflation = std::sqrt(inflation / sum);
 }
 
+bool RowEstimator::tells_errors(int channel) const noexcept {
+  return channel % (1 + model_.eye().ommatidia() / most_telling) == 0;
+}
+
 void RowEstimator::fill(int channel, const FieldSystem::Solution& solution, RowEstimate& row) {
   RowParameters& parameters = row.parameters;
   const ConeParameters drawn = model_.drawn();
@@ -196,17 +169,22 @@ void RowEstimator::fill(int channel, const FieldSystem::Solution& solution, RowE
   const std::vector<double> entries = entries_of(parameters, support, plane_cols);
   std::array<double, field_kinds> hidden{};
   for (std::size_t f = 0; f < field_kinds; ++f) hidden[f] = hidden_variance(parameters.field[f], parameters.grid);
+  RowErrorSum errors;
+  const bool telling = solution.covariance_of_twice.size() > 0;
   for (std::size_t j = 0; j < entries.size(); ++j) {
     if (!(entries[j] > least_entry)) continue;
-    const Gradient gradient = gradient_of(support, j, parameters, solution, plane_cols);
-    double variance = gradient.variance(solution.covariance);
+    EntryGradient gradient = gradient_of(support, j, parameters, solution, plane_cols);
+    RowErrorSum::Entry entry{entries[j], changes_at(support, j), 0.0};
     for (std::size_t f = 0; f < field_kinds; ++f) {
-      variance += hidden[f] * support.envelope[f][j] * support.envelope[f][j];
+      entry.hidden_variance += hidden[f] * support.envelope[f][j] * support.envelope[f][j];
     }
+    const double variance = gradient.variance(solution.covariance) + entry.hidden_variance;
     row.columns.push_back(support.pixels[j]);
     row.values.push_back(static_cast<float>(entries[j]));
     row.sigmas.push_back(static_cast<float>(row.inflation * std::sqrt(variance)));
+    if (telling) errors.add(entry, std::move(gradient));
   }
+  if (telling) row.errors = errors.errors(solution.covariance, solution.covariance_of_twice);
 }
 
 }  // namespace compueye::calib

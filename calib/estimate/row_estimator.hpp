@@ -49,6 +49,7 @@ class RowEstimator {
   [[nodiscard]] Start start(int channel);
   [[nodiscard]] FieldSystem system(const Start& from) const;
   [[nodiscard]] bool fits(const Start& from, double chi2) const;
+  [[nodiscard]] bool tells_errors(int channel) const noexcept;
   static void choose(const FieldSystem& fields, const StrengthsTried& tried, RowEstimate& row);
   void fill(int channel, const FieldSystem::Solution& solution, RowEstimate& row);
 

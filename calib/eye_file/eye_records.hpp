@@ -70,10 +70,12 @@ struct Estimate {
   std::string plan;          ///< the whole text
   double distance_mm = 0.0;  ///< from the lens tip to the plane that it is of, > 0
 
-  std::vector<NamedNumber> shared;      ///< parameters of all rows: the plane's distance and tilt, display gamma ...
-  std::vector<NamedNumber> kappas;      ///< NMSE of a reconstruction over the square of a relative row error, by kind
-  std::vector<NamedNumber> sensor;      ///< EMVA 1288 of all channels
-  std::vector<NamedColumn> parameters;  ///< of a row: pose, acceptance, gain ...
+  std::vector<NamedNumber> shared;  ///< parameters of all rows: the plane's distance and tilt, display gamma ...
+  /// NMSE of a reconstruction over the square of a relative row error, by kind; names with a dot are what else goes
+  /// into an error budget.
+  std::vector<NamedNumber> kappas;
+  std::vector<NamedNumber> sensor;            ///< EMVA 1288 of all channels
+  std::vector<NamedColumn> parameters;        ///< of a row: pose, acceptance, gain ...
   std::vector<NamedColumn> channel_sensor;    ///< EMVA 1288 of a channel
   std::vector<hal::ChannelStatus> status;     ///< M
   std::vector<double> dark_level_lsb;         ///< M; empty: not measured

@@ -141,9 +141,8 @@ Result<void> set_exposure(const CalibrationRequest& request, const CalibrationBe
     return choose_exposure(*bench.exposure, request.plan, bench.eye, bench.light, bench.clock, go_on);
   }
   const auto before = TRY(cut_off(file));
-  const auto text = before ? value_in(before->begun.configuration, exposure_key) : std::nullopt;
-  const auto exposure_ns = text ? typed_number(*text) : std::nullopt;
-  return exposure_ns ? bench.exposure->change(std::llround(*exposure_ns)) : Result<void>();
+  const auto exposure_ns = before ? exposure_of(before->begun) : std::nullopt;
+  return exposure_ns ? bench.exposure->change(*exposure_ns) : Result<void>();
 }
 
 calib::Session session_of(const CalibrationRequest& request, const CalibrationBench& bench, std::uint32_t config_id) {
@@ -167,6 +166,12 @@ calib::Session session_of(const CalibrationRequest& request, const CalibrationBe
 }
 
 }  // namespace
+
+std::optional<std::int64_t> exposure_of(const calib::Session& session) {
+  const auto text = value_in(session.configuration, exposure_key);
+  const auto exposure_ns = text ? typed_number(*text) : std::nullopt;
+  return exposure_ns ? std::optional<std::int64_t>(std::llround(*exposure_ns)) : std::nullopt;
+}
 
 Result<std::int64_t> run_calibration(const CalibrationRequest& request, const CalibrationBench& bench, EyeFile& file,
                                      const CalibrationWatch& watch) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,9 @@ struct CalibrationBench {
 
 /// Of the line that a session's configuration has where the exposure can be set.
 inline constexpr std::string_view exposure_key = "exposure_ns";
+
+/// Of a session whose eye allowed it to be set.
+[[nodiscard]] std::optional<std::int64_t> exposure_of(const calib::Session& session);
 
 struct CalibrationRequest {
   calib::SessionPlan plan;

@@ -96,6 +96,7 @@ hal::Result<std::int64_t> store(const calib::ResponseEstimate& estimate,
   record.plan = origin.plan;
   record.distance_mm = origin.distance_mm;
   record.shared = shared_of(estimate);
+  record.kappas = origin.kappas;
   add_rows(estimate, record);
   add_noise(sensor, record);
   if (!linearity.empty()) record.linearity_codes = linearity.front().code;

@@ -16,6 +16,7 @@ struct EstimateOrigin {
   std::string program, method, plan;
   double distance_mm = 0.0;
   std::int64_t made_unix_s = 0;
+  std::vector<calib::NamedNumber> kappas = {};  ///< as Estimate has them
 };
 
 /// An estimate with linearity (a table a channel of the same codes, or none) and noise of its channels, as an eye file

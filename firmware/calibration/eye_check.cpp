@@ -11,6 +11,7 @@
 #include "calib/emva1288.hpp"
 #include "calib/estimate/light_samples.hpp"
 #include "calib/patterns/pattern_family.hpp"
+#include "firmware/calibration/calibration_run.hpp"
 #include "firmware/calibration/plan_file.hpp"
 #include "firmware/calibration/session_captures.hpp"
 #include "firmware/eye/measured_eye.hpp"
@@ -147,6 +148,7 @@ Result<EyeCheck> EyeCheck::create(const calib::EyeFile& file, double distance_mm
   EyeCheck check;
   check.session_ = found.session.id;
   check.estimate_ = found.id;
+  check.exposure_ns_ = exposure_of(found.session.begun);
   calib::CheckSamples& s = check.samples_;
   s.channels = eye.ommatidia();
   s.light_spread = spread_of(back.light.lamp);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,8 @@ class EyeCheck {
   [[nodiscard]] const calib::SessionPlan& plan() const noexcept { return plan_; }
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
   [[nodiscard]] std::int64_t estimate() const noexcept { return estimate_; }
+  /// What the session was exposed for, where that could be set.
+  [[nodiscard]] std::optional<std::int64_t> exposure_ns() const noexcept { return exposure_ns_; }
   /// What is to be taken: no light, white, and the three patterns that tell most of a turn.
   [[nodiscard]] const std::vector<calib::Wanted>& schedule() const noexcept { return schedule_; }
   /// Captures of that schedule, in its order. Errors: mismatch (others, or of other channels), and those of
@@ -36,6 +39,7 @@ class EyeCheck {
  private:
   calib::SessionPlan plan_;
   std::int64_t session_ = 0, estimate_ = 0;
+  std::optional<std::int64_t> exposure_ns_;
   std::vector<calib::Wanted> schedule_;
   calib::CheckSamples samples_;  // all but what is seen now
   calib::CodeNoise noise_;

@@ -20,7 +20,9 @@ hal::Result<SessionEstimate> estimate_session(calib::EyeFile& file, const calib:
   calib::EstimateSettings settings;
   settings.threads = request.threads;
   made.rows = TRY(calib::estimate_response(taken.captures, noise, eye.geometry, plane, settings, progress));
+  if (request.budget) made.budget = TRY(request.budget(made.rows, taken.captures.frames));
   EstimateOrigin origin;
+  if (made.budget) origin.kappas = numbers_of(*made.budget);
   origin.sessions = {session.id};
   origin.program = request.program;
   origin.method = "hybrid";

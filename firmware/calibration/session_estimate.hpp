@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "calib/emva1288.hpp"
 #include "calib/estimate/estimate.hpp"
 #include "calib/eye_file/eye_file.hpp"
+#include "firmware/calibration/error_budget.hpp"
 
 namespace compueye::firmware {
 
@@ -16,12 +20,17 @@ struct EstimateRequest {
   std::string program;      ///< version
   std::int64_t now_unix_s = 0;
   int threads = 1;
+  /// What the errors of such rows, from patterns of so many frames each, do to a picture: stored with them. May be
+  /// none.
+  std::function<hal::Result<std::optional<ErrorBudget>>(const calib::ResponseEstimate&, std::span<const double> frames)>
+      budget = {};
 };
 
 struct SessionEstimate {
   std::int64_t id = 0;  ///< in the file
   calib::ResponseEstimate rows;
   calib::SensorNoise sensor;
+  std::optional<ErrorBudget> budget;
 };
 
 /// From the captures of a session that has ended to rows, stored in its file: of the file's eye, at the session's

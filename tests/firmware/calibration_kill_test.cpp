@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <random>
 #include <string>
 #include <thread>
@@ -15,6 +16,7 @@
 #include "firmware/calibration/calibration_run.hpp"
 #include "firmware/calibration/session_estimate.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
+#include "hal/try.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/source_folder.hpp"
@@ -49,16 +51,44 @@ calib::EyeFile new_file(const std::string& path, const Board& board) {
   return calib::EyeFile::create(path, {board.source.serial, board.eye, board.object}).value();
 }
 
+/// Light that is there at once: of one that comes exponentially a capture has a different millionth each time, which
+/// sometimes is a code.
+class PromptDisplay final : public hal::Illuminator {
+ public:
+  PromptDisplay(sim::SimulatedEye& eye, hal::Clock& clock, const hal::ObjectPlane& plane)
+      : eye_(eye), clock_(clock), description_{plane.rows, plane.cols, 256, 0} {}
+
+  [[nodiscard]] const hal::IlluminatorDescription& describe() const noexcept override { return description_; }
+  [[nodiscard]] hal::Result<std::int64_t> show(std::span<const float> intensities) override {
+    hal::Image picture(description_.rows, description_.cols, 0.0F);
+    picture.pixels.assign(intensities.begin(), intensities.end());
+    TRY(eye_.show(picture, 0.0));
+    return clock_.now_ns();
+  }
+  [[nodiscard]] hal::Result<std::int64_t> off() override {
+    TRY(eye_.show(hal::Image(), 0.0));
+    return clock_.now_ns();
+  }
+
+ private:
+  sim::SimulatedEye& eye_;
+  hal::Clock& clock_;
+  hal::IlluminatorDescription description_;
+};
+
 /// All of it, or until somebody ends the process; a byte into `pipe` for each capture that is on the disk.
 bool session(const Board& board, const CalibrationRequest& request, calib::EyeFile& file, int pipe) {
   const SimulatedBench bench = SimulatedBench::create(board, plain_display(board), 1).value();
+  PromptDisplay display(*bench.eye, *bench.clock, board.object);
   std::int64_t told = -1;
   const auto tell = [&](const calib::SessionProgress& p) {
     if (p.taken > told && told >= 0 && pipe >= 0) static_cast<void>(::write(pipe, "x", 1));
     told = p.taken;
     return true;
   };
-  return run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file, tell).has_value();
+  const auto ended = run_calibration(request, {*bench.eye, display, *bench.clock}, file, tell);
+  if (!ended) std::fputs((ended.error().text() + "\n").c_str(), stderr);
+  return ended.has_value();
 }
 
 struct Killed {
@@ -100,7 +130,7 @@ calib::ResponseEstimate estimated(calib::EyeFile& file, const Board& board) {
 TEST_CASE("a session that is killed a hundred times at random ends with the rows of one that is not, bit for bit") {
   const int kills = test::sanitized ? 5 : 100;
   const Board board = quiet_board();
-  CalibrationRequest request = request_of(24 + 4 * kills);
+  CalibrationRequest request = request_of(24 + 12 * kills);
   const test::TemporaryFolder folder;
   const std::string cut_path = (folder.path() / "cut.eye").string();
   calib::EyeFile whole = new_file((folder.path() / "whole.eye").string(), board);

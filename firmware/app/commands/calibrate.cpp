@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
@@ -13,8 +14,12 @@
 #include "calib/eye_file/eye_file.hpp"
 #include "calib/median.hpp"
 #include "firmware/app/command.hpp"
+#include "firmware/app/commands/calibrate_check.hpp"
+#include "firmware/app/commands/calibrate_report.hpp"
 #include "firmware/calibration/attached_bench.hpp"
 #include "firmware/calibration/calibration_run.hpp"
+#include "firmware/calibration/error_budget.hpp"
+#include "firmware/calibration/eye_check.hpp"
 #include "firmware/calibration/lights.hpp"
 #include "firmware/calibration/plan_file.hpp"
 #include "firmware/calibration/row_error.hpp"
@@ -47,6 +52,8 @@ struct CalibrateRequest {
   LightWanted light;
   std::uint64_t seed = 0;
   bool resume = false;
+  bool check = false;
+  bool budget = false;  ///< also of an eye where that takes long
   Overrides overrides;  ///< distance
 };
 
@@ -102,61 +109,19 @@ class Teller {
   bool signal_told_ = false;
 };
 
-/// "61 good, 2 dead, 1 does-not-fit".
-std::string statuses_of(const calib::ResponseEstimate& rows) {
-  std::string text;
-  for (const hal::NamedChannelStatus& each : hal::channel_statuses()) {
-    const auto count = std::count_if(rows.rows.begin(), rows.rows.end(),
-                                     [&](const calib::RowEstimate& row) { return row.status == each.status; });
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, each.name);
+/// What the report says of how good pictures are going to be. An eye without it is as good.
+Result<std::optional<ErrorBudget>> budget_of(const CalibrateRequest& o, const Board& board,
+                                             const calib::ResponseEstimate& rows, std::span<const double> frames,
+                                             Session& session) {
+  if (board.object.pixels() > most_budget_pixels && !o.budget) {
+    session.note("what errors of the rows do to pictures is left out, since it takes minutes; --budget tells");
+    return std::optional<ErrorBudget>();
   }
-  return text;
-}
-
-double median_chi2(const calib::ResponseEstimate& rows) {
-  std::vector<double> all;
-  for (const calib::RowEstimate& row : rows.rows) {
-    if (row.status == hal::ChannelStatus::good) all.push_back(row.held_out_chi2);
-  }
-  return calib::median(std::move(all));
-}
-
-Result<Figures> report_of(const CalibrateRequest& o, const calib::SessionProgress& p,
-                          const calib::StoredSession& session, const SessionEstimate& made,
-                          const calib::EyeFile& file) {
-  std::uint64_t rejected = 0;
-  for (const std::uint64_t count : p.rejected) rejected += count;
-  const std::optional<double> known = median_row_error(TRY(file.load_response(made.id)));
-  const auto good = std::count_if(made.rows.rows.begin(), made.rows.rows.end(),
-                                  [](const calib::RowEstimate& row) { return row.status == hal::ChannelStatus::good; });
-  const auto exposure_ns = value_in(session.begun.configuration, exposure_key);
-  const auto exposure = exposure_ns ? typed_number(*exposure_ns) : std::nullopt;
-  Figures f{{"file", o.eye},
-            {"serial", session.begun.serial},
-            {"session", session.id},
-            {"estimate", made.id},
-            {"captures", TRY(file.capture_count(session.id))},
-            {"rejected", rejected},
-            {"signal_lsb", p.signal_lsb},
-            {"settle_ms", p.settle_ms},
-            {"exposure_ms", exposure ? std::optional(*exposure * 1e-6) : std::nullopt},
-            {"distance_mm", session.begun.distance_mm},
-            {"channels", made.rows.rows.size()},
-            {"good_channels", good},
-            {"statuses", statuses_of(made.rows)},
-            {"row_error", known},
-            {"held_out_chi2", median_chi2(made.rows)},
-            {"plane_distance_error_mm", made.rows.plane.distance_mm},
-            {"display_gamma", made.rows.gamma},
-            {"display_black_level", made.rows.black_level}};
-  return std::move(f.tell(
-      "{file}: session {session} of {serial} at {distance_mm} mm, {captures} captures[, exposed for {exposure_ms:4} "
-      "ms][; "
-      "{rejected} were taken again]\n"
-      "channels: {statuses}\n"
-      "rows known to {row_error:2%|no stated sigma} (median of what is stated); patterns held out: chi^2 "
-      "{held_out_chi2:3} a sample\n"
-      "display: {plane_distance_error_mm:3} mm from where the board has it, black level {display_black_level:2}\n"));
+  auto made = error_budget(board, rows, frames, session.progress());
+  if (made) return std::optional(*made);
+  TRY(session.check_stop());
+  session.note("what errors of the rows do to pictures is not known: " + made.error().text());
+  return std::optional<ErrorBudget>();
 }
 
 /// A session is taken, or what is left of one: its id.
@@ -172,12 +137,10 @@ Result<std::int64_t> take(const CalibrateRequest& o, const Board& board, const C
   return run_calibration(request, bench, file, [&](const calib::SessionProgress& p) { return teller.tell(p); });
 }
 
-Result<std::int64_t> take_simulated(const CalibrateRequest& o, const Board& board, calib::EyeFile& file,
-                                    Teller& teller) {
+Result<SimulatedBench> simulated_bench(const CalibrateRequest& o, const Board& board) {
   const sim::Scene display =
       o.scene.empty() ? plain_display(board) : TRY(choose_scene(board, SceneChoice{o.scene, 0, std::nullopt}));
-  const SimulatedBench bench = TRY(SimulatedBench::create(board, display, o.seed));
-  return take(o, board, {*bench.eye, *bench.display, *bench.clock}, file, teller);
+  return SimulatedBench::create(board, display, o.seed);
 }
 
 Result<AttachedBench> attached_bench(const CalibrateRequest& o, const Board& board, Session& session) {
@@ -198,7 +161,8 @@ Result<calib::StoredSession> taken(const CalibrateRequest& o, Board& board, std:
   std::int64_t id = 0;
   if (board.source.simulated()) {
     file = TRY(writable_eye_file(o.eye, board));
-    id = TRY(take_simulated(o, board, *file, teller));
+    const SimulatedBench bench = TRY(simulated_bench(o, board));
+    id = TRY(take(o, board, {*bench.eye, *bench.display, *bench.clock}, *file, teller));
   } else {
     AttachedBench bench = TRY(attached_bench(o, board, session));
     board.source.serial = bench.eye->describe().serial;
@@ -209,11 +173,41 @@ Result<calib::StoredSession> taken(const CalibrateRequest& o, Board& board, std:
   return std::move(*std::ranges::find(sessions, id, &calib::StoredSession::id));
 }
 
+/// What a check is to see of the board's eye now.
+Result<std::vector<calib::Capture>> seen_now(const CalibrateRequest& o, Board& board, const calib::EyeFile& file,
+                                             const EyeCheck& check, Session& session) {
+  Teller teller(session);
+  const auto watch = [&](const calib::SessionProgress& p) { return teller.tell(p); };
+  if (board.source.simulated()) {
+    const SimulatedBench bench = TRY(simulated_bench(o, board));
+    return take_captures(check.plan(), check.schedule(), {*bench.eye, *bench.display, *bench.clock}, watch);
+  }
+  AttachedBench bench = TRY(attached_bench(o, board, session));
+  board.source.serial = bench.eye->describe().serial;
+  TRY(check_is_of(file, board));
+  if (check.exposure_ns()) TRY(bench.exposure.change(*check.exposure_ns()));
+  return take_captures(check.plan(), check.schedule(), {*bench.eye, *bench.light, session.clock(), &bench.exposure},
+                       watch);
+}
+
+Result<void> check_again(const CalibrateRequest& o, Board& board, Session& session) {
+  const calib::EyeFile file = TRY(calib::EyeFile::open(o.eye, calib::EyeFileMode::read));
+  TRY(check_is_of(file, board));
+  const EyeCheck check = TRY(EyeCheck::create(file, board.object.distance_mm, eye_to_simulate(board).integration_s(),
+                                              1.0 / board.sensor.lsb()));
+  const auto captures = TRY(seen_now(o, board, file, check, session));
+  session.end_progress();
+  const calib::EyeChange change = TRY(check.judge(captures));
+  TRY(session.print(check_report(o.eye, check, change)));
+  return check_verdict(o.eye, change);
+}
+
 Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   Board board = TRY(load_board(o.board));
   TRY(o.overrides.apply(board));
   TRY(light_kind(o.light.kind, board.source.simulated()));
   TRY(need(o.scene.empty() || board.source.simulated(), "--scene", "is of a simulated display; leave it out"));
+  if (o.check) return check_again(o, board, session);
   if (!o.plan.empty()) TRY(load_plan(o.plan));  // before a file is made
   std::optional<calib::EyeFile> file;
   Teller teller(session);
@@ -225,9 +219,12 @@ Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   wanted.program = COMPUEYE_VERSION;
   wanted.now_unix_s = now_unix_s();
   wanted.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
+  wanted.budget = [&](const calib::ResponseEstimate& rows, std::span<const double> frames) {
+    return budget_of(o, board, rows, frames, session);
+  };
   const SessionEstimate made = TRY(estimate_session(*file, done, wanted, session.progress()));
   session.end_progress();
-  Figures report = TRY(report_of(o, teller.last(), done, made, *file));
+  Figures report = TRY(calibration_report(o.eye, teller.last(), done, made, *file));
   TRY(file->close());
   return session.print(std::move(report));
 }
@@ -248,6 +245,11 @@ Action declare(OptionList& options) {
   options.settings("calibrate", o->overrides);
   options.add("--seed", o->seed, "of a simulated eye's noise");
   options.flag("--resume", o->resume, "go on with a session that was cut off, or with its estimate");
+  options.flag("--check", o->check, "only ask whether the eye still sees as in its last session: 1 where it does not");
+  for (const char* other : {"--resume", "--plan"}) options.at("--check").excludes(other);
+  options.flag("--budget", o->budget,
+               "tell what errors of the rows do to pictures, also of a display beyond 4096 pixels, where that takes "
+               "minutes");
   options.json("print one object and nothing else on stdout");
   return action_of(o, calibrate);
 }
@@ -260,6 +262,7 @@ std::string footer() {
          "  compueye calibrate --board boards/sim-8x8-built --eye built.eye\n"
          "  compueye calibrate --board boards/sim-8x8-built --eye built.eye --scene scenes/calibration-display.toml "
          "--resume\n"
+         "  compueye calibrate --board boards/sim-8x8-built --eye built.eye --check\n"
          "  compueye calibrate --board boards/generic-usb --eye ce-1.eye --light display --monitor 1\n";
 }
 

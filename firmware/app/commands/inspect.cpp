@@ -6,12 +6,15 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "firmware/app/command.hpp"
 #include "firmware/eye/board.hpp"
+#include "firmware/eye_page/eye_page.hpp"
+#include "firmware/files/atomic_file.hpp"
 #include "firmware/files/file_descriptor.hpp"
 #include "firmware/files/npy.hpp"
 #include "firmware/files/npy_header.hpp"
@@ -31,6 +34,7 @@ struct InspectRequest {
   std::string what;         ///< a .npy, .mtx or .eye file, a board's folder or its board.toml
   std::string as = "auto";  ///< auto, array or response; for .npy
   std::string size;         ///< "HxW" of the picture behind a response; empty: unknown
+  std::string html;         ///< page of an eye file; empty: none
 };
 
 /// Shape, range and mean of the finite elements, and how many are NaN or infinite.
@@ -102,9 +106,24 @@ Result<void> add_figures(const InspectRequest& o, const recon::Progress& progres
                   ", expected a .npy, .mtx or .eye file or a board's folder");
 }
 
+/// The page is made first, so that what the report says of it is true.
+Result<void> write_page(const InspectRequest& o, Session& session, Figures& figures) {
+  TRY(need(fs::path(o.what).extension() == ".eye", "--html", "makes a page of an .eye file, not of '" + o.what + "'"));
+  std::error_code error;
+  const bool another = fs::path(o.html).extension() != ".eye" && !fs::equivalent(o.what, o.html, error);
+  TRY(need(another, "--html", "is '" + o.html + "', an eye file, expected another name for the page"));
+  TRY(try_output(o.html));
+  const std::string page = TRY(eye_page(TRY(page_data(o.what))));
+  TRY(session.seal());
+  TRY(write_file_atomically(o.html, std::as_bytes(std::span(page))));
+  figures.add("html", o.html, "page");
+  return {};
+}
+
 Result<void> inspect(const InspectRequest& o, Session& session) {
   Figures figures;
   figures.add("file", o.what, "file");
+  if (!o.html.empty()) TRY(write_page(o, session, figures));
   const auto done = add_figures(o, session.progress(), figures);
   session.end_progress();
   TRY(session.check_stop());
@@ -127,6 +146,9 @@ Action declare(OptionList& options) {
            "is given and there are two axes")
       .type("KIND")
       .where(one_of({"auto", "array", "response"}));
+  options.add("--html", o->html, "write everything that an .eye file holds as one page to look at and to print")
+      .type("FILE")
+      .output();
   options.json("print one object with every figure");
   return action_of(o, inspect);
 }
@@ -139,7 +161,7 @@ std::string footer() {
          "  compueye inspect A.mtx --size 16x16\n"
          "  compueye inspect y.npy\n"
          "  compueye inspect A.npy --as response\n"
-         "  compueye inspect F.eye\n"
+         "  compueye inspect F.eye --html eye.html\n"
          "  compueye inspect boards/sim-8x8 --json";
 }
 

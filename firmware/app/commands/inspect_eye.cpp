@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "calib/eye_file/eye_file.hpp"
 #include "calib/median.hpp"
 #include "firmware/app/commands/inspect.hpp"
+#include "firmware/calibration/error_budget.hpp"
 #include "firmware/calibration/row_error.hpp"
 #include "firmware/text/date.hpp"
 #include "firmware/text/words.hpp"
@@ -97,6 +99,15 @@ Figures named(const std::vector<calib::NamedNumber>& numbers) {
   return figures;
 }
 
+/// But for the names with a dot, which the budget tells.
+Figures kappas_of(const calib::Estimate& estimate) {
+  std::vector<calib::NamedNumber> kappas;
+  for (const calib::NamedNumber& each : estimate.kappas) {
+    if (each.name.find('.') == std::string::npos) kappas.push_back(each);
+  }
+  return named(kappas);
+}
+
 /// A figure of all channels by its median.
 Figures medians(const std::vector<calib::NamedColumn>& columns) {
   Figures figures;
@@ -114,6 +125,7 @@ Figures counts(const std::vector<hal::ChannelStatus>& channels) {
 
 Figures figures_of(const calib::StoredEstimate& stored, const calib::Estimate& e) {
   Value::List sessions(e.sessions.begin(), e.sessions.end());
+  const std::optional<ErrorBudget> budget = budget_from(e.kappas);
   return {{"id", stored.id},
           {"parent", e.parent},
           {"sessions", std::move(sessions)},
@@ -128,7 +140,8 @@ Figures figures_of(const calib::StoredEstimate& stored, const calib::Estimate& e
           {"median_dark_level_lsb", median(e.dark_level_lsb)},
           {"linearity_points", e.linearity_codes.size()},
           {"shared", named(e.shared)},
-          {"kappas", named(e.kappas)},
+          {"kappas", kappas_of(e)},
+          {"budget", budget ? Value(firmware::figures_of(*budget)) : Value()},
           {"sensor", named(e.sensor)},
           {"median_channel_sensor", medians(e.channel_sensor)}};
 }
@@ -143,6 +156,10 @@ void add_lines(const Figures& estimate, std::size_t i, Figures& f) {
     const Value* numbers = estimate.find(key);
     if (numbers != nullptr && !numbers->says_nothing()) f.line(label, of(key));
   }
+  const Value* budget = estimate.find("budget");
+  if (budget == nullptr || budget->says_nothing()) return;
+  f.line("  a picture", f.sentence(budget_parts(fmt::format("estimates.{}.budget", i))));
+  f.line("  and with", f.sentence(budget_outlook(fmt::format("estimates.{}.budget", i))));
 }
 
 }  // namespace

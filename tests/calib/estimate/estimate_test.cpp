@@ -145,6 +145,36 @@ TEST_CASE("calib: 256 patterns tell the rows of the built eye, and how well") {
   CHECK(median_error(parametric) < 0.02);
 }
 
+TEST_CASE("calib: errors by kind add up to what sigmas state, and gains are off by what is said") {
+  const ResponseEstimate found = estimated(blobs(96));
+  std::vector<double> off, said;
+  for (std::size_t m = 0; m < found.rows.size(); ++m) {
+    const calib::RowEstimate& row = found.rows[m];
+    REQUIRE(row.errors.has_value());
+    double norm = 0.0, stated = 0.0, along = 0.0, by_kind = 0.0;
+    for (std::size_t e = 0; e < row.columns.size(); ++e) {
+      const auto value = static_cast<double>(row.values[e]), sigma = static_cast<double>(row.sigmas[e]);
+      norm += value * value;
+      stated += sigma * sigma;
+      along += value * (value - eye().row(static_cast<int>(m))[row.columns[e]]);
+    }
+    for (std::size_t k = 0; k < calib::row_error_kinds.size(); ++k) {
+      by_kind += row.inflation * row.inflation * row.errors->now[k] * row.errors->now[k];
+    }
+    CHECK(by_kind == doctest::Approx(stated / norm).epsilon(1e-3));
+    // What fields hide between their knots is in the rest, and no pattern takes it off.
+    for (std::size_t k = 0; k < 3; ++k) {
+      CHECK(row.errors->of_twice[k] < row.errors->now[k]);
+      CHECK(row.errors->of_twice[k] > 0.6 * row.errors->now[k]);
+    }
+    off.push_back(std::abs(along / norm));
+    said.push_back(row.inflation * row.errors->now[0]);
+  }
+  // Half of normal numbers are within .67 of their sigma; a few rows tell that roughly.
+  CHECK(calib::median(off) < 2.0 * 0.67 * calib::median(said));
+  CHECK(calib::median(off) > 0.3 * 0.67 * calib::median(said));
+}
+
 TEST_CASE("calib: the drift of the lamp costs little once references are counted in") {
   if (test::sanitized) return;
   SessionSettings drifting;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -146,6 +147,26 @@ TEST_CASE("inspect of a file without anything but its eye, and of one that is no
   check_no_key_left(run_compueye("inspect F.eye", folder.path()).out);
   folder.file("cut.eye", bytes_of(folder / "F.eye").substr(0, 5000));
   check_failed(run_compueye("inspect cut.eye", folder.path()), ErrorCode::bad_format, "cut.eye", {});
+}
+
+TEST_CASE("inspect --html writes one page, whole or not at all, of eye files alone") {
+  const ScratchProblem problem;
+  const TemporaryFolder& folder = problem.folder();
+  put_eye_file(folder);
+  const auto json = json_from("inspect F.eye --html eye.html --json", folder.path());
+  CHECK(json["html"] == "eye.html");
+  CHECK(json["estimates"].size() == 2);
+  const std::string page = bytes_of(folder / "eye.html");
+  CHECK(page.starts_with("<!DOCTYPE html>"));
+  CHECK(page.ends_with("</html>\n"));
+  CHECK(page.find("63 good: no mark") != std::string::npos);
+  check_refused(problem, "inspect A.npy --html z.html", ErrorCode::usage, "--html", {"A.npy", ".eye"});
+  check_refused(problem, "inspect F.eye --html F.eye", ErrorCode::usage, "--html", {"F.eye"});
+  std::filesystem::create_hard_link(folder / "F.eye", folder / "link.html");
+  check_refused(problem, "inspect F.eye --html link.html", ErrorCode::usage, "--html", {"link.html"});
+  check_refused(problem, "inspect F.eye --html none/z.html", ErrorCode::not_found, "none/z.html", {});
+  check_refused(problem, "inspect F.eye --html /dev/full", ErrorCode::no_space, "/dev/full", {});
+  CHECK(run_compueye("inspect F.eye --html -", folder.path()).out == page);
 }
 
 TEST_CASE("export writes the newest rows, those of masked channels empty, for every reader") {

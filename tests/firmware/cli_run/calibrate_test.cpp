@@ -48,9 +48,33 @@ TEST_CASE("what a session measured is estimated by --resume where a stop came be
   CHECK(json["captures"] == calib::capture_schedule(firmware::parse_plan(short_plan, "plan").value(), 16, 16).size());
   CHECK(json["good_channels"].get<int>() >= 60);
   CHECK(json["row_error"].get<double>() < 0.05);
+  const auto& budget = json["budget"];
+  CHECK(budget["patterns"] == 40);
+  CHECK(budget["nmse_noise"].get<double>() > 0.0);
+  CHECK(budget["nmse_with_twice_the_patterns"].get<double>() < budget["nmse"].get<double>());
+  double rows = 0.0;
+  for (const auto& kind : budget["kinds"]) rows += kind["nmse"].get<double>();
+  CHECK(budget["nmse_rows"].get<double>() == doctest::Approx(rows));
+  // What was stored with the estimate is told again, to the digit.
+  const Ended inspected = test::compueye({"inspect", eye, "--json"});
+  REQUIRE_MESSAGE(inspected.exit_code == 0, inspected.err);
+  CHECK(nlohmann::json::parse(inspected.out)["estimates"][0]["budget"] == budget);
   const Ended run = test::compueye({"run", "--board", path, "--eye", eye, "--frames", "5", "--lossless", "--json"});
   REQUIRE_MESSAGE(run.exit_code == 0, run.err);
   CHECK(nlohmann::json::parse(run.out)["quality"]["nmse"].get<double>() < 0.05);
+  // Before the light that it was calibrated with it is as it was; a display whose black shines is not that light.
+  const std::vector<std::string> check{"calibrate", "--board", path, "--eye", eye, "--check", "--seed", "3"};
+  const Ended same = test::compueye(check);
+  CHECK_MESSAGE(same.exit_code == 0, same.err);
+  CHECK(contains(same.out, "ommatidia: none stands out"));
+  const auto other = board.outside("other.toml");
+  std::ofstream(other) << "[display]\nblack_level = 0.01\n[[surface]]\npicture = \"fig2\"\nshines = true\n";
+  std::vector<std::string> changed = check;
+  changed.insert(changed.end(), {"--scene", other.string(), "--json"});
+  const Ended shining = test::compueye(changed);
+  CHECK(shining.exit_code == 1);
+  CHECK(contains(shining.err, "has changed"));
+  CHECK(nlohmann::json::parse(shining.out)["gain"]["value"].get<double>() > 0.001);
   // Another distance goes into the same file, and neither stands for the other.
   const auto plan = board.outside("p.toml");
   std::ofstream(plan) << short_plan;
