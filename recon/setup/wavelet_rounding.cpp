@@ -13,12 +13,6 @@ constexpr std::size_t tile = core::WaveletPicture::tile;
 /// What taking a row apart in double leaves of a nought.
 constexpr double rounding_of_double = 1e-9;
 
-double largest_of(const std::vector<double>& values, std::size_t begin, std::size_t end) {
-  double largest = 0.0;
-  for (std::size_t k = begin; k < end; ++k) largest = std::max(largest, std::abs(values[k]));
-  return largest;
-}
-
 core::WaveletPicture shape_of(const Response& response) {
   return {static_cast<std::size_t>(response.image_rows()), static_cast<std::size_t>(response.image_cols())};
 }
@@ -26,7 +20,8 @@ core::WaveletPicture shape_of(const Response& response) {
 }  // namespace
 
 bool wavelets_fit(const Response& response) noexcept {
-  return std::min(response.image_rows(), response.image_cols()) >= least_wavelet_side;
+  return std::min(response.image_rows(), response.image_cols()) >= least_wavelet_side &&
+         shape_of(response).coefficients() <= tile << 16U;
 }
 
 WaveletRows::WaveletRows(const Response& response)
@@ -40,28 +35,51 @@ void WaveletRows::analyse(int m) {
   std::fill(picture_.begin(), picture_.end(), 0.0);
   response_.for_each_in_row(m, [&](std::int32_t n, double v) { picture_[static_cast<std::size_t>(n)] = v; });
   core::wavelet_analyse(shape_, picture_.data(), coefficients_.data(), scratch_.data());
-  const double largest = largest_of(coefficients_, 0, coefficients_.size());
-  for (double& c : coefficients_) {
-    if (largest < least_row_peak || std::abs(c) < rounding_of_double * largest) c = 0.0;
+  double largest = 0.0;
+  for (const double c : coefficients_) largest = std::max(largest, std::abs(c));
+  const double least = largest < least_row_peak ? largest : rounding_of_double * largest;
+  tiles_.clear();
+  for (std::size_t t = 0; t < coefficients_.size() / tile; ++t) {
+    bool some = false;
+    for (std::size_t k = t * tile; k < (t + 1) * tile; ++k) {
+      if (std::abs(coefficients_[k]) <= least) coefficients_[k] = 0.0;
+      some = some || coefficients_[k] != 0.0;
+    }
+    if (some) tiles_.push_back(t);
   }
 }
 
+double WaveletRows::largest_of(bool details) const {
+  double largest = 0.0;
+  for (const std::size_t t : tiles_) {
+    if (is_detail(t) != details) continue;
+    for (std::size_t k = t * tile; k < (t + 1) * tile; ++k) largest = std::max(largest, std::abs(coefficients_[k]));
+  }
+  return largest;
+}
+
 void WaveletRows::round_averages() {
-  for (std::size_t k = 0; k < shape_.averages(); ++k) {
-    coefficients_[k] = static_cast<double>(float_of_bf16(bf16_of(coefficients_[k])));
+  for (const std::size_t t : tiles_) {
+    if (is_detail(t)) return;
+    for (std::size_t k = t * tile; k < (t + 1) * tile; ++k) {
+      coefficients_[k] = static_cast<double>(float_of_bf16(bf16_of(coefficients_[k])));
+    }
   }
 }
 
 void WaveletRows::round_details() {
-  const float scale = int8_scale(largest_of(coefficients_, shape_.averages(), coefficients_.size()));
-  for (std::size_t k = shape_.averages(); k < coefficients_.size(); ++k) {
-    coefficients_[k] = int8_of(coefficients_[k], scale) * static_cast<double>(scale);
+  const float scale = int8_scale(largest_of(true));
+  for (const std::size_t t : tiles_) {
+    if (!is_detail(t)) continue;
+    for (std::size_t k = t * tile; k < (t + 1) * tile; ++k) {
+      coefficients_[k] = int8_of(coefficients_[k], scale) * static_cast<double>(scale);
+    }
   }
 }
 
 /// Of averages at least half as bright as the brightest: what stays the same when others are left out.
 double WaveletRows::energy_of_bright() const {
-  const double half = 0.5 * largest_of(coefficients_, 0, shape_.averages());
+  const double half = 0.5 * largest_of(false);
   double energy = 0.0;
   for (std::size_t k = 0; k < shape_.averages(); ++k) {
     if (std::abs(coefficients_[k]) >= half) energy += coefficients_[k] * coefficients_[k];
@@ -70,27 +88,24 @@ double WaveletRows::energy_of_bright() const {
 }
 
 bool WaveletRows::drop_negligible(double least) {
-  bool dropped = false;
-  for (std::size_t t = 0; t < kept_.size(); ++t) {
-    if (!kept_[t]) continue;
+  const auto negligible = [&](std::size_t t) {
     double energy = 0.0;
     for (std::size_t k = t * tile; k < (t + 1) * tile; ++k) energy += coefficients_[k] * coefficients_[k];
-    if (energy > 0.0 && energy >= least) continue;
-    kept_[t] = false;
-    dropped = true;
-  }
-  return dropped;
+    if (energy > 0.0 && energy >= least) return false;
+    for (std::size_t k = t * tile; k < (t + 1) * tile; ++k) coefficients_[k] = 0.0;
+    return true;
+  };
+  return std::erase_if(tiles_, negligible) > 0;
 }
 
 void WaveletRows::round(int m) {
   analyse(m);
   round_averages();
   exact_ = coefficients_;
-  kept_.assign(coefficients_.size() / tile, true);
   const double least = negligible_tile * negligible_tile * energy_of_bright();
   // The scale is that of what stays, or the numbers could not be found again.
   do {
-    for (std::size_t k = 0; k < coefficients_.size(); ++k) coefficients_[k] = kept_[k / tile] ? exact_[k] : 0.0;
+    for (const std::size_t t : tiles_) std::copy_n(&exact_[t * tile], tile, &coefficients_[t * tile]);
     round_details();
   } while (drop_negligible(least));
 }

@@ -9,8 +9,8 @@
 
 namespace compueye::recon {
 
-/// Rows of A as core::WaveletRuns hold them: coefficients of core::WaveletPicture, averages rounded to bfloat16, details
-/// to whole numbers -127 .. 127 times a scale of their row, and no tile that is negligible beside its row.
+/// Rows of A as core::WaveletRuns hold them: coefficients of core::WaveletPicture, averages rounded to bfloat16,
+/// details to whole numbers -127 .. 127 times a scale of their row, and no tile that is negligible beside its row.
 class WaveletRows {
  public:
   /// Of a response that knows its picture, of at least least_wavelet_side pixels a side.
@@ -23,6 +23,8 @@ class WaveletRows {
 
   /// Of the last row: those of averages first (shape().averages() of them), tile after tile.
   [[nodiscard]] const std::vector<double>& coefficients() const noexcept { return coefficients_; }
+  /// The tiles of the last row that are not nought.
+  [[nodiscard]] const std::vector<std::size_t>& tiles() const noexcept { return tiles_; }
   /// The row that these coefficients are, as a picture.
   [[nodiscard]] const std::vector<double>& picture();
   [[nodiscard]] const core::WaveletPicture& shape() const noexcept { return shape_; }
@@ -33,14 +35,19 @@ class WaveletRows {
   void round_details();
   [[nodiscard]] bool drop_negligible(double least);
   [[nodiscard]] double energy_of_bright() const;
+  [[nodiscard]] double largest_of(bool details) const;
+  [[nodiscard]] bool is_detail(std::size_t t) const noexcept {
+    return t * core::WaveletPicture::tile >= shape_.averages();
+  }
 
   const Response& response_;
   core::WaveletPicture shape_;
   std::vector<double> picture_, exact_, coefficients_, scratch_;
-  std::vector<bool> kept_;  // a tile
+  std::vector<std::size_t> tiles_;  // with something in them, ascending
 };
 
 inline constexpr int least_wavelet_side = 16;
+/// Whether the picture is known, long enough on both sides, and 16 bits can number its tiles.
 [[nodiscard]] bool wavelets_fit(const Response& response) noexcept;
 
 /// The matrix of rounded rows.
@@ -49,8 +56,8 @@ inline constexpr int least_wavelet_side = 16;
 /// The largest ||a - rounded a|| / ||a|| over the rows.
 [[nodiscard]] double worst_row_error(const Response& response, const Response& rounded);
 
-/// A tile of sixteen coefficients whose norm is below this share of its row's is left out. On rows of the 80x80 eye as a
-/// calibration finds them that makes errors of .36 % (the worst row .55 %): less than a calibration of 1024 captures
+/// A tile of sixteen coefficients whose norm is below this share of its row's is left out. On rows of the 80x80 eye as
+/// a calibration finds them that makes errors of .36 % (the worst row .55 %): less than a calibration of 1024 captures
 /// leaves (.48 %), and a twentieth of the noise of a sample. .0005 takes a fourth more tiles for .30 %, .001 a fifth
 /// fewer for .45 %.
 inline constexpr double negligible_tile = 0.0007;

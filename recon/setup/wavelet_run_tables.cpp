@@ -16,10 +16,10 @@ constexpr std::size_t rows_at_once = core::WaveletRuns<float>::rows_at_once;
 
 /// The tiles of four rows, and of a fourth each what it is in all of them.
 struct Block {
-  std::vector<std::uint16_t> place;                          ///< ascending
+  std::vector<std::uint16_t> place;                             ///< ascending
   std::vector<std::array<double, rows_at_once * tile>> values;  ///< row after row
-  std::size_t averages = 0;                                  ///< how many of the tiles are of averages
-  std::array<double, rows_at_once> largest{};                ///< detail of each row
+  std::size_t averages = 0;                                     ///< how many of the tiles are of averages
+  std::array<double, rows_at_once> largest{};                   ///< detail of each row
 };
 
 class Blocks {
@@ -33,15 +33,17 @@ class Blocks {
     for (std::size_t l = 0; l < rows_at_once && exists(b, l); ++l) {
       rows_.recover(static_cast<int>(rows_at_once * b + l));
       of_row[l] = rows_.coefficients();
-      for (std::size_t k = 0; k < of_row[l].size(); ++k) {
-        if (of_row[l][k] != 0.0) seen[k / tile] = true;
-        if (k >= shape().averages()) block.largest[l] = std::max(block.largest[l], std::abs(of_row[l][k]));
+      for (const std::size_t t : rows_.tiles()) {
+        seen[t] = true;
+        for (std::size_t k = t * tile; k < (t + 1) * tile && !is_average(t); ++k) {
+          block.largest[l] = std::max(block.largest[l], std::abs(of_row[l][k]));
+        }
       }
     }
     for (std::size_t t = 0; t < tiles(); ++t) {
       if (!seen[t]) continue;
       block.place.push_back(static_cast<std::uint16_t>(t));
-      block.averages += t * tile < shape().averages() ? 1 : 0;
+      block.averages += is_average(t) ? 1 : 0;
       auto& values = block.values.emplace_back();
       for (std::size_t l = 0; l < rows_at_once && exists(b, l); ++l) {
         std::copy_n(of_row[l].begin() + static_cast<std::ptrdiff_t>(t * tile), tile,
@@ -58,6 +60,7 @@ class Blocks {
     return (static_cast<std::size_t>(seeing_.rows()) + rows_at_once - 1) / rows_at_once;
   }
   [[nodiscard]] const core::WaveletPicture& shape() const noexcept { return rows_.shape(); }
+  [[nodiscard]] bool is_average(std::size_t t) const noexcept { return t * tile < shape().averages(); }
   [[nodiscard]] std::size_t tiles() const noexcept { return shape().coefficients() / tile; }
 
  private:
@@ -68,8 +71,8 @@ class Blocks {
 void push_bf16(const std::array<double, rows_at_once * tile>& rows, std::vector<std::uint32_t>& words) {
   for (std::size_t l = 0; l < rows_at_once; l += 2) {
     for (std::size_t k = 0; k < tile; ++k) {
-      words.push_back(bf16_of(rows[l * tile + k]) |
-                      static_cast<std::uint32_t>(bf16_of(rows[(l + 1) * tile + k])) << 16U);
+      words.push_back(bf16_of(rows[l * tile + k]) | static_cast<std::uint32_t>(bf16_of(rows[(l + 1) * tile + k]))
+                                                        << 16U);
     }
   }
 }
@@ -149,7 +152,7 @@ WaveletRunTables<T> wavelet_run_tables(const Response& seeing) {
   const auto view = [](const auto& list) {
     return typename core::WaveletRuns<T>::Tiles{list.first.data(), list.place.data(), list.words.data()};
   };
-  tables.view = {blocks.shape(),      blocks.count(),      tables.band.size() - 1, view(tables.averages),
+  tables.view = {blocks.shape(),       blocks.count(),      tables.band.size() - 1, view(tables.averages),
                  view(tables.details), tables.scale.data(), tables.row.data(),      tables.band.data()};
   return tables;
 }

@@ -26,8 +26,8 @@ struct FullValues {
   void seek(std::size_t group) { at += 64 * group; }
   [[nodiscard]] COMPUEYE_INLINE FourRows<T, width> entries(std::size_t g, std::size_t h) const {
     const T* from = at + 64 * g + width * h;
-    return {
-        {load_wide<Vector<T>>(from), load_wide<Vector<T>>(from + 16), load_wide<Vector<T>>(from + 32), load_wide<Vector<T>>(from + 48)}};
+    return {{load_wide<Vector<T>>(from), load_wide<Vector<T>>(from + 16), load_wide<Vector<T>>(from + 32),
+             load_wide<Vector<T>>(from + 48)}};
   }
 };
 

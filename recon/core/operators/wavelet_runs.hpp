@@ -31,8 +31,8 @@ struct WaveletRuns {
   std::size_t blocks = 0;
   std::size_t bands = 1;  ///< ranges of tiles of the picture, so that each of A' y can be computed by itself
   Tiles averages, details;
-  const T* scale = nullptr;           ///< of details: 4 blocks
-  const std::int32_t* row = nullptr;  ///< 4 blocks: the row of A, -1 where the last block has none
+  const T* scale = nullptr;             ///< of details: 4 blocks
+  const std::int32_t* row = nullptr;    ///< 4 blocks: the row of A, -1 where the last block has none
   const std::uint32_t* band = nullptr;  ///< bands + 1: the first tile of each, then all tiles
 
   /// Elements of T that forward() and adjoint_accumulate() want as scratch, aligned to 64 bytes.
