@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "recon/core/parts/crew.hpp"
+#include "recon/setup/like_rows.hpp"
 #include "recon/setup/quantised_response.hpp"
 #include "recon/setup/wavelet_rounding.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 constexpr std::size_t tile = core::WaveletPicture::tile;
 constexpr std::size_t rows_at_once = core::WaveletRuns<float>::rows_at_once;
 
-/// The tiles of four rows, and of a fourth each what it is in all of them.
+/// The tiles that any of four rows has, and what each is in all of them.
 struct Block {
   std::vector<std::uint16_t> place;                             ///< ascending
   std::vector<std::array<double, rows_at_once * tile>> values;  ///< row after row
@@ -22,50 +23,68 @@ struct Block {
   std::array<double, rows_at_once> largest{};                   ///< detail of each row
 };
 
+/// Rows of A by their tiles, four alike in a block.
 class Blocks {
  public:
-  explicit Blocks(const Response& seeing) : seeing_(seeing), rows_(seeing) {}
+  explicit Blocks(const Response& seeing) {
+    WaveletRows rows(seeing);
+    shape_ = rows.shape();
+    for (int m = 0; m < seeing.rows(); ++m) {
+      rows.recover(m);
+      auto& values = values_.emplace_back();
+      auto& places = places_.emplace_back();
+      for (const std::size_t t : rows.tiles()) {
+        places.push_back(static_cast<std::uint16_t>(t));
+        const auto begin = rows.coefficients().begin() + static_cast<std::ptrdiff_t>(t * tile);
+        values.insert(values.end(), begin, begin + tile);
+      }
+    }
+    order_ = in_groups_of_like_rows(places_, tiles(), rows_at_once);
+  }
 
-  [[nodiscard]] Block at(std::size_t b) {
+  [[nodiscard]] Block at(std::size_t b) const {
     Block block;
-    std::array<std::vector<double>, rows_at_once> of_row;
-    std::vector<bool> seen(tiles(), false);
-    for (std::size_t l = 0; l < rows_at_once && exists(b, l); ++l) {
-      rows_.recover(static_cast<int>(rows_at_once * b + l));
-      of_row[l] = rows_.coefficients();
-      for (const std::size_t t : rows_.tiles()) {
-        seen[t] = true;
-        for (std::size_t k = t * tile; k < (t + 1) * tile && !is_average(t); ++k) {
-          block.largest[l] = std::max(block.largest[l], std::abs(of_row[l][k]));
-        }
-      }
+    for (std::size_t l = 0; l < rows_at_once && row(b, l) >= 0; ++l) {
+      const auto& places = places_[static_cast<std::size_t>(row(b, l))];
+      block.place.insert(block.place.end(), places.begin(), places.end());
     }
-    for (std::size_t t = 0; t < tiles(); ++t) {
-      if (!seen[t]) continue;
-      block.place.push_back(static_cast<std::uint16_t>(t));
-      block.averages += is_average(t) ? 1 : 0;
-      auto& values = block.values.emplace_back();
-      for (std::size_t l = 0; l < rows_at_once && exists(b, l); ++l) {
-        std::copy_n(of_row[l].begin() + static_cast<std::ptrdiff_t>(t * tile), tile,
-                    values.begin() + static_cast<std::ptrdiff_t>(l * tile));
-      }
-    }
+    std::sort(block.place.begin(), block.place.end());
+    block.place.erase(std::unique(block.place.begin(), block.place.end()), block.place.end());
+    block.values.resize(block.place.size());
+    for (const std::uint16_t t : block.place) block.averages += is_average(t) ? 1 : 0;
+    for (std::size_t l = 0; l < rows_at_once && row(b, l) >= 0; ++l)
+      fill(block, l, static_cast<std::size_t>(row(b, l)));
     return block;
   }
 
-  [[nodiscard]] bool exists(std::size_t b, std::size_t l) const noexcept {
-    return rows_at_once * b + l < static_cast<std::size_t>(seeing_.rows());
+  /// Of block b in place l; -1: none.
+  [[nodiscard]] std::int32_t row(std::size_t b, std::size_t l) const noexcept {
+    const std::size_t at = rows_at_once * b + l;
+    return at < order_.size() ? order_[at] : -1;
   }
-  [[nodiscard]] std::size_t count() const noexcept {
-    return (static_cast<std::size_t>(seeing_.rows()) + rows_at_once - 1) / rows_at_once;
-  }
-  [[nodiscard]] const core::WaveletPicture& shape() const noexcept { return rows_.shape(); }
-  [[nodiscard]] bool is_average(std::size_t t) const noexcept { return t * tile < shape().averages(); }
-  [[nodiscard]] std::size_t tiles() const noexcept { return shape().coefficients() / tile; }
+  [[nodiscard]] std::size_t count() const noexcept { return (order_.size() + rows_at_once - 1) / rows_at_once; }
+  [[nodiscard]] const core::WaveletPicture& shape() const noexcept { return shape_; }
+  [[nodiscard]] std::size_t tiles() const noexcept { return shape_.coefficients() / tile; }
 
  private:
-  const Response& seeing_;
-  WaveletRows rows_;
+  [[nodiscard]] bool is_average(std::size_t t) const noexcept { return t * tile < shape_.averages(); }
+
+  void fill(Block& block, std::size_t l, std::size_t m) const {
+    std::size_t at = 0;
+    for (std::size_t own = 0; own < places_[m].size(); ++own) {
+      while (block.place[at] < places_[m][own]) ++at;
+      for (std::size_t k = 0; k < tile; ++k) {
+        const double value = values_[m][own * tile + k];
+        block.values[at][l * tile + k] = value;
+        if (!is_average(places_[m][own])) block.largest[l] = std::max(block.largest[l], std::abs(value));
+      }
+    }
+  }
+
+  core::WaveletPicture shape_;
+  std::vector<std::vector<std::uint16_t>> places_;  // of each row
+  std::vector<std::vector<double>> values_;
+  std::vector<std::int32_t> order_;
 };
 
 void push_bf16(const std::array<double, rows_at_once * tile>& rows, std::vector<std::uint32_t>& words) {
@@ -125,7 +144,7 @@ std::vector<std::uint32_t> banded(const std::vector<std::uint32_t>& block_first,
 template <class T>
 WaveletRunTables<T> wavelet_run_tables(const Response& seeing) {
   WaveletRunTables<T> tables;
-  Blocks blocks(seeing);
+  const Blocks blocks(seeing);
   std::vector<std::uint32_t> averages{0}, details{0};
   std::vector<std::size_t> work(blocks.tiles(), 0);
   for (std::size_t b = 0; b < blocks.count(); ++b) {
@@ -134,7 +153,7 @@ WaveletRunTables<T> wavelet_run_tables(const Response& seeing) {
     for (std::size_t l = 0; l < rows_at_once; ++l) {
       scale[l] = int8_scale(block.largest[l]);
       tables.scale.push_back(static_cast<T>(scale[l]));
-      tables.row.push_back(blocks.exists(b, l) ? static_cast<std::int32_t>(rows_at_once * b + l) : -1);
+      tables.row.push_back(blocks.row(b, l));
     }
     for (std::size_t t = 0; t < block.place.size(); ++t) {
       ++work[block.place[t]];

@@ -11,7 +11,8 @@ namespace compueye::recon::core {
 /// A = C S' for rows that are smooth pictures, as a soft-edged receptive field times a slowly changing sensitivity is:
 /// S' measures the picture's coefficients in a wavelet basis once for all rows, C holds those tiles of each row's
 /// coefficients that are not negligible (Beylkin, Coifman & Rokhlin 1991, "Fast wavelet transforms and numerical
-/// algorithms I"). Four rows make a block and share their tiles; what one of them does not have is nought there.
+/// algorithms I"). Four rows, any that have many of them in common, make a
+/// block and share their tiles; what one of them does not have is nought there.
 ///
 /// Averages carry nearly all of a row and are held as bfloat16: words[32 t + 16 h + k] is row 2h in its lower half and
 /// row 2h+1 in its upper, at coefficient k of the t-th tile of the list. Details are whole numbers times a scale of
@@ -52,7 +53,8 @@ std::size_t flops(const WaveletRuns<double>& a) noexcept;
 void forward(const WaveletRuns<float>& a, const float* x, float* y, float* scratch, const Crew& crew = {}) noexcept;
 void forward(const WaveletRuns<double>& a, const double* x, double* y, double* scratch, const Crew& crew = {}) noexcept;
 
-/// x += A' y: to each coefficient rows ascending. Workers share blocks in the one and bands in the other.
+/// x += A' y: to each coefficient rows in the order of their blocks. Workers share blocks in the one and bands in the
+/// other.
 void adjoint_accumulate(const WaveletRuns<float>& a, const float* y, float* x, float* scratch,
                         const Crew& crew = {}) noexcept;
 void adjoint_accumulate(const WaveletRuns<double>& a, const double* y, double* x, double* scratch,
