@@ -32,4 +32,9 @@ std::optional<RoundedForm> rounded_form(const Response& response, std::optional<
   return form;
 }
 
+bool is_rounded_in_wavelets(const Response& response) {
+  if (!wavelets_fit(response) || response.nonzeros() < streamed_entries) return false;
+  return rounded_in_wavelets(response).content_hash() == response.content_hash();
+}
+
 }  // namespace compueye::recon

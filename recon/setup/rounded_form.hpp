@@ -20,6 +20,10 @@ struct RoundedForm {
 /// (keeps_details()), or, in wavelet runs, a row that is off by more than most_row_error.
 [[nodiscard]] std::optional<RoundedForm> rounded_form(const Response& response, std::optional<OperatorKind> asked);
 
+/// Whether a response that would stream is what rounding leaves of one in wavelet runs, which then are a quick way to
+/// multiply by it in double too.
+[[nodiscard]] bool is_rounded_in_wavelets(const Response& response);
+
 /// 16 MB in float32, which no core's own cache holds: streaming them takes longer than anything else in a frame.
 inline constexpr std::int64_t streamed_entries = 4'000'000;
 

@@ -13,6 +13,7 @@
 #include "calib/plausible_response.hpp"
 #include "recon/core/operators/wavelet_picture.hpp"
 #include "recon/reconstructor.hpp"
+#include "recon/setup/gram_matrix.hpp"
 #include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
 #include "recon/setup/rounded_form.hpp"
@@ -207,6 +208,41 @@ TEST_CASE("rows that are not smooth are applied with every digit, and small eyes
   const auto tiny = recon::Reconstructor::create(random_response(random, 4, Picture{8, 40}, 1.0), objective, plan);
   test::check_error(tiny, hal::ErrorCode::unsupported, "operator",
                     {std::to_string(recon::least_wavelet_side), "8", "40", "dense-runs"});
+}
+
+TEST_CASE("a large measured eye is in wavelet runs by rule, and A A' is that of the rounded rows") {
+  if (test::sanitized) return;  // four million entries and one
+  constexpr int rows = 330, side = 160, reach = 64;
+  std::vector<std::int64_t> start{0};
+  std::vector<std::int32_t> columns;
+  std::vector<double> values;
+  for (int m = 0; m < rows; ++m) {
+    const int row = reach + m % 33, col = reach + m / 33 * 3;
+    for (int r = 0; r < side; ++r) {
+      for (int c = 0; c < side; ++c) {
+        const double square = ((r - row) * (r - row) + (c - col) * (c - col)) / double{reach * reach};
+        if (square >= 1.0) continue;
+        columns.push_back(r * side + c);
+        values.push_back((1.0 - square) * (1.0 - square) * (1.0 + 0.001 * (m % 7) * (r % 40)));
+      }
+    }
+    start.push_back(static_cast<std::int64_t>(values.size()));
+  }
+  const Response a =
+      Response::from_csr(rows, side * side, start, columns, values).value().with_image(side, side).value();
+  REQUIRE(a.nonzeros() >= recon::streamed_entries);
+  const auto form = recon::rounded_form(a, std::nullopt);
+  REQUIRE(form.has_value());
+  CHECK(form->kind == OperatorKind::wavelet_runs);
+  CHECK(recon::is_rounded_in_wavelets(form->response));
+  CHECK_FALSE(recon::is_rounded_in_wavelets(a));
+  const recon::GramMatrix gram(form->response, recon::MetricKind::identity);
+  auto scratch = gram.make_scratch();
+  std::vector<double> found(rows), first(static_cast<std::size_t>(side * side), 0.0), expected(rows);
+  gram.row(5, scratch, found);
+  form->response.for_each_in_row(5, [&](std::int32_t n, double v) { first[static_cast<std::size_t>(n)] = v; });
+  form->response.forward(first, expected);
+  for (std::size_t m = 0; m < found.size(); ++m) CHECK(found[m] == doctest::Approx(expected[m]).epsilon(1e-12));
 }
 
 TEST_CASE("a frame with wavelet runs is one of the rounded matrix") {
