@@ -110,7 +110,8 @@ double relative_distance(const std::vector<double>& a, const std::vector<double>
 
 TEST_CASE("a picture is put together from what it was taken apart into, and measuring is the transpose of that") {
   Random random(113);
-  for (const auto& [rows, cols] : {std::pair{2, 2}, {3, 5}, {16, 16}, {17, 35}, {40, 31}, {64, 48}}) {
+  for (const Picture& picture : {Picture{2, 2}, {3, 5}, {16, 16}, {17, 35}, {40, 31}, {64, 48}}) {
+    const int rows = picture.rows, cols = picture.cols;
     CAPTURE(rows);
     CAPTURE(cols);
     const recon::core::WaveletPicture shape{static_cast<std::size_t>(rows), static_cast<std::size_t>(cols)};
