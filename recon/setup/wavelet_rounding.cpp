@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t tile = core::WaveletPicture::tile;
 /// What taking a row apart in double leaves of a nought.
 constexpr double rounding_of_double = 1e-9;
+/// An average below this share of the largest is nought.
+constexpr double least_average = 0x1p-20;
 
 core::WaveletPicture shape_of(const Response& response) {
   return {static_cast<std::size_t>(response.image_rows()), static_cast<std::size_t>(response.image_cols())};
@@ -60,10 +62,15 @@ double WaveletRows::largest_of(bool details) const {
 
 void WaveletRows::round_averages() {
   for (const std::size_t t : tiles_) {
-    if (is_detail(t)) return;
+    if (is_detail(t)) break;
     for (std::size_t k = t * tile; k < (t + 1) * tile; ++k) {
       coefficients_[k] = static_cast<double>(float_of_bf16(bf16_of(coefficients_[k])));
     }
+  }
+  // By rounded numbers, so that rounding once more finds the same: nothing is left near rounding_of_double.
+  const double least = least_average * largest_of(false);
+  for (std::size_t k = 0; k < shape_.averages(); ++k) {
+    if (std::abs(coefficients_[k]) < least) coefficients_[k] = 0.0;
   }
 }
 
