@@ -122,6 +122,7 @@ hal::Result<std::vector<Timed>> measure_plain(const recon::Response& a, Vectors&
   kinds.emplace_back("dense runs", recon::OperatorKind::dense_runs);
   kinds.emplace_back("dense runs, bf16", recon::OperatorKind::dense_runs_bf16);
   kinds.emplace_back("dense runs, int8", recon::OperatorKind::dense_runs_int8);
+  kinds.emplace_back("wavelet runs", recon::OperatorKind::wavelet_runs);
   for (const auto& [name, kind] : kinds) {
     auto timed = time_kind(name, a, kind, v);
     if (!timed) return tl::unexpected(std::move(timed.error()));

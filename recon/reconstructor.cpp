@@ -14,7 +14,7 @@
 #include "recon/problem_checks.hpp"
 #include "recon/setup/operator_list.hpp"
 #include "recon/setup/penalty_rule.hpp"
-#include "recon/setup/quantised_response.hpp"
+#include "recon/setup/rounded_form.hpp"
 #include "recon/setup/shorter_side.hpp"
 #include "recon/setup/solver_row.hpp"
 #include "recon/setup/unit_choice.hpp"
@@ -98,16 +98,11 @@ Reconstructor::~Reconstructor() = default;
 
 hal::Result<Reconstructor> Reconstructor::create(const Response& response, const Objective& objective, const Plan& plan,
                                                  std::optional<Factor> factor, const Progress& progress) {
-  if (plan.op && is_lossy(*plan.op)) {
-    const Response rounded = quantised(response, *plan.op);
-    if (keeps_details(response, rounded)) {
-      return create_as_applied(rounded, objective, plan, std::move(factor), progress);
-    }
-    Plan exact = plan;
-    exact.op.reset();
-    return create_as_applied(response, objective, exact, std::move(factor), progress);
-  }
-  return create_as_applied(response, objective, plan, std::move(factor), progress);
+  const auto form = rounded_form(response, plan.op);
+  Plan applied = plan;
+  if (form) applied.op = form->kind;
+  if (!form && plan.op && is_lossy(*plan.op)) applied.op.reset();
+  return create_as_applied(form ? form->response : response, objective, applied, std::move(factor), progress);
 }
 
 hal::Result<Reconstructor> Reconstructor::create_as_applied(const Response& response, const Objective& objective,

@@ -24,8 +24,9 @@ class Reconstructor {
   /// refused (error stale) when its rho or order does not fit. Errors: usage, mismatch, interrupted, and out_of_range:
   /// a setting beyond its range; a response that sees nothing or whose columns have a norm outside 1e-35..1e35 (root
   /// mean square), whose samples float32 could not hold; a rho too small or too large for the precision.
-  /// unsupported: an operator that the response does not fit. One that rounds A more than its details bear is not used
-  /// (keeps_details()): plan() then has none, and the rule's takes its place.
+  /// unsupported: an operator that the response does not fit. One that rounds A more than its details bear is not used:
+  /// plan() then has none, and the rule's takes its place. Where none is asked for plan() has the rounded form that A
+  /// is applied in, if it is (recon/setup/rounded_form.hpp).
   [[nodiscard]] static hal::Result<Reconstructor> create(const Response& response, const Objective& objective,
                                                          const Plan& plan, std::optional<Factor> factor = std::nullopt,
                                                          const Progress& progress = {});

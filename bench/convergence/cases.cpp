@@ -40,9 +40,9 @@ FrameCase at_paper_noise(FrameCase c) {
   return c;
 }
 
-FrameCase with_measured_rows(FrameCase c) {
+FrameCase with_measured_rows(FrameCase c, recon::OperatorKind op) {
   c.measured = true;
-  c.plan.op = recon::OperatorKind::dense_runs_int8;
+  c.plan.op = op;
   return c;
 }
 
@@ -57,8 +57,12 @@ std::vector<FrameCase> frame_cases() {
           make_case("80x80 line art, DCT, paper noise", large, "line-art", BasisKind::dct, 1e3 / 80, 1e3 / 200)),
       at_paper_noise(make_case("80x80 phantom, TV, paper noise", large, "phantom", BasisKind::tv, 1e3 / 60, 1e3 / 150)),
       make_case("80x80 line art, DCT, 30 dB", large, "line-art", BasisKind::dct, 1e3 / 300, 1e3 / 800),
+      at_paper_noise(with_measured_rows(
+          make_case("80x80 line art, DCT, measured rows", large, "line-art", BasisKind::dct, 1e3 / 15, 1e3 / 40),
+          recon::OperatorKind::wavelet_runs)),
       at_paper_noise(with_measured_rows(make_case("80x80 line art, DCT, measured rows in int8", large, "line-art",
-                                                  BasisKind::dct, 1e3 / 15, 1e3 / 40))),
+                                                  BasisKind::dct, 1e3 / 15, 1e3 / 40),
+                                        recon::OperatorKind::dense_runs_int8)),
       at_paper_noise(
           make_case("120x120 line art, DCT, paper noise", largest, "line-art", BasisKind::dct, 1e3 / 30, 1e3 / 60)),
   };

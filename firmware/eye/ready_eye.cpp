@@ -12,15 +12,15 @@
 #include "recon/lambda_by_risk.hpp"
 #include "recon/lambda_rule.hpp"
 #include "recon/response_fit.hpp"
-#include "recon/setup/operator_list.hpp"
-#include "recon/setup/quantised_response.hpp"
+#include "recon/setup/rounded_form.hpp"
 #include "recon/setup/solver_row.hpp"
 
 namespace compueye::firmware {
 namespace {
 
 recon::Response as_applied(const recon::Response& response, const recon::Plan& plan) {
-  return plan.op && recon::is_lossy(*plan.op) ? recon::quantised(response, *plan.op) : response;
+  auto form = recon::rounded_form(response, plan.op);
+  return form ? std::move(form->response) : response;
 }
 
 /// How many times what noise explains is the least residual of any picture; 0 where that is no misfit.

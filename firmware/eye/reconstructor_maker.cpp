@@ -5,7 +5,6 @@
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
 #include "recon/setup/operator_list.hpp"
-#include "recon/setup/quantised_response.hpp"
 #include "recon/setup/solver_row.hpp"
 
 namespace compueye::firmware {
@@ -25,16 +24,19 @@ std::string_view name(FactorOrigin origin) noexcept {
 ReconstructorMaker::ReconstructorMaker(const recon::Response& response, std::optional<recon::OperatorKind> op,
                                        std::string cache, Memory memory)
     : response_(response), cache_(std::move(cache)), memory_(memory) {
+  if (auto form = recon::rounded_form(response, op)) {
+    rounded_ = std::move(form);
+    return;
+  }
   if (!op || !recon::is_lossy(*op)) return;
-  rounded_ = recon::quantised(response, *op);
-  if (recon::keeps_details(response, *rounded_)) return;
-  rounded_.reset();
   notes_.push_back("operator " + std::string(recon::name(*op)) +
                    " would round this response more than its details bear, so A is applied with every digit");
 }
 
-hal::Result<recon::Reconstructor> ReconstructorMaker::make(const recon::Objective& objective, const recon::Plan& plan,
+hal::Result<recon::Reconstructor> ReconstructorMaker::make(const recon::Objective& objective, const recon::Plan& asked,
                                                            const recon::Progress& progress) {
+  recon::Plan plan = asked;
+  if (rounded_) plan.op = rounded_->kind;
   origin_ = FactorOrigin::made;
   // In double a factor is made anew every time: what is kept is in float32.
   const recon::Factor wanted = recon::Reconstructor::wanted_factor(response(), objective, plan);

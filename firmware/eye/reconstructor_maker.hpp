@@ -11,6 +11,7 @@
 #include "hal/result.hpp"
 #include "recon/problem/response.hpp"
 #include "recon/reconstructor.hpp"
+#include "recon/setup/rounded_form.hpp"
 
 namespace compueye::firmware {
 
@@ -30,7 +31,8 @@ class ReconstructorMaker {
     remembers  ///< keeps a copy of every factor that another reconstructor could want
   };
 
-  /// `response` must outlive the maker. A lossy `op` rounds it, and the factor is that of the rounded one. `cache` is
+  /// `response` must outlive the maker. A lossy `op`, or none, may round it (recon::rounded_form()), and the
+  /// factor is that of the rounded one. `cache` is
   /// the folder that keeps factors from run to run; it need not exist, and empty there is none.
   ReconstructorMaker(const recon::Response& response, std::optional<recon::OperatorKind> op, std::string cache,
                      Memory memory = Memory::forgets);
@@ -38,7 +40,7 @@ class ReconstructorMaker {
   ReconstructorMaker& operator=(const ReconstructorMaker&) = delete;
 
   /// As the operator holds it: what lambda, rho and the like follow from.
-  [[nodiscard]] const recon::Response& response() const noexcept { return rounded_ ? *rounded_ : response_; }
+  [[nodiscard]] const recon::Response& response() const noexcept { return rounded_ ? rounded_->response : response_; }
 
   /// Errors: those of Reconstructor::create(). What the cache cannot give or take is a note, never an error.
   [[nodiscard]] hal::Result<recon::Reconstructor> make(const recon::Objective& objective, const recon::Plan& plan,
@@ -55,7 +57,7 @@ class ReconstructorMaker {
   void keep(const FactorKey& key, const recon::Factor& factor);
 
   const recon::Response& response_;
-  std::optional<recon::Response> rounded_;
+  std::optional<recon::RoundedForm> rounded_;
   std::string cache_;
   Memory memory_;
   std::vector<std::pair<FactorKey, recon::Factor>> remembered_;

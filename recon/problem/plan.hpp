@@ -42,10 +42,10 @@ struct Plan {
   /// minimization"). For pictures of few lit pixels, e a tenth of their brightness; docs/lambda-rule.md says when it
   /// pays. FrameInfo's objective is the weighted one, without a duality gap. 0: one pass.
   double l1_reweighting = 0.0;
-  /// How A is applied; nothing: the quickest form that keeps every digit of the precision
-  /// (recon/setup/operator_list.hpp). running_sums stands for any number of rows at once. Dense runs in bf16 or int8
-  /// have to be asked for: the problem that is then solved, factor and modes included, is that of the rounded matrix
-  /// (recon/setup/quantised_response.hpp).
+  /// How A is applied; nothing: wavelet runs for large measured eyes that they fit (recon/setup/rounded_form.hpp), else
+  /// the quickest form that keeps every digit of the precision (recon/setup/operator_list.hpp). running_sums stands for
+  /// any number of rows at once. Dense runs in bf16 or int8 have to be asked for. In a form that rounds, the problem
+  /// that is solved, factor and modes included, is that of the rounded matrix (recon/setup/quantised_response.hpp).
   std::optional<OperatorKind> op = std::nullopt;
   /// That share a frame's work, the caller's among them: 1 .. WorkerThreads::most, no more than there are cores to
   /// spare. Same bits for any number. Pictures of fewer than 9,216 pixels are left to one.

@@ -7,6 +7,7 @@
 #include "recon/setup/basis_tables.hpp"
 #include "recon/setup/on_all_cores.hpp"
 #include "recon/setup/operator_list.hpp"
+#include "recon/setup/rounded_form.hpp"
 
 namespace compueye::recon {
 namespace {
@@ -22,6 +23,7 @@ GramMatrix::GramMatrix(const Response& response, MetricKind metric) : response_(
   if (const auto chosen = choose_operator(response, std::nullopt); chosen && sums(chosen->kind)) {
     sums_ = running_sum_tables<double>(response, chosen->images, chosen->transposed);
   }
+  if (is_rounded_in_wavelets(response)) wavelets_ = wavelet_run_tables<double>(response);
   std::int64_t entry = 0;
   for (int m = 0; m < response.rows(); ++m) {
     first_run_.push_back(runs_.size());
@@ -51,6 +53,7 @@ GramMatrix::Scratch GramMatrix::make_scratch() const {
   const auto pixels = static_cast<std::size_t>(response_.cols());
   Scratch scratch{std::vector<double>(pixels, 0.0), {}, {}, {}};
   if (sums_) scratch.sums.resize(sums_->view.scratch_size());
+  if (wavelets_) scratch.sums.resize(wavelets_->view.scratch_size(1));
   if (!metric_.is_identity()) {
     scratch.coefficients.resize(pixels);
     scratch.strips.resize(core::dct_scratch_size(metric_.dct.rows.length, metric_.dct.cols.length));
@@ -72,6 +75,7 @@ void GramMatrix::row(int i, Scratch& scratch, std::span<double> out) const {
 
 void GramMatrix::apply_to(const std::vector<double>& picture, Scratch& scratch, std::span<double> out) const {
   if (sums_) return core::forward(sums_->view, picture.data(), out.data(), scratch.sums.data());
+  if (wavelets_) return core::forward(wavelets_->view, picture.data(), out.data(), scratch.sums.data());
   const double* values = response_.values().data();
   for (std::size_t j = 0; j < out.size(); ++j) {
     double sum = 0.0;

@@ -12,12 +12,13 @@
 #include "recon/setup/factor.hpp"
 #include "recon/setup/mirror_symmetry.hpp"
 #include "recon/setup/running_sum_tables.hpp"
+#include "recon/setup/wavelet_run_tables.hpp"
 
 namespace compueye::recon {
 
 /// Entries of A K0^-1 A' in double, a row at a time: A applied to one of its own rows, as running sums where fields are
-/// drawn (a twentieth of the work); else run by run, because even a measured field is a few runs of neighbouring
-/// pixels.
+/// drawn (a twentieth of the work), as wavelet runs where they were rounded to those; else run by run, because even a
+/// measured field is a few runs of neighbouring pixels.
 class GramMatrix {
  public:
   GramMatrix(const GramMatrix&) = delete;
@@ -51,6 +52,7 @@ class GramMatrix {
 
   const Response& response_;
   std::optional<RunningSumTables<double>> sums_;
+  std::optional<WaveletRunTables<double>> wavelets_;
   std::vector<Run> runs_;
   std::vector<std::size_t> first_run_;  // M + 1
   std::vector<double> row_table_;

@@ -13,12 +13,14 @@
 #include "recon/setup/dense_run_tables.hpp"
 #include "recon/setup/quantised_response.hpp"
 #include "recon/setup/running_sum_tables.hpp"
+#include "recon/setup/wavelet_rounding.hpp"
+#include "recon/setup/wavelet_run_tables.hpp"
 
 namespace compueye::recon {
 namespace {
 
 constexpr bool lossy = true;
-constexpr std::array<OperatorRow, 8> rows{{
+constexpr std::array<OperatorRow, 9> rows{{
     {"dense", "dense", OperatorKind::dense},
     {"csr", "csr", OperatorKind::csr},
     {"running sums", "running-sums", OperatorKind::running_sums},
@@ -27,6 +29,7 @@ constexpr std::array<OperatorRow, 8> rows{{
     {"dense runs", "dense-runs", OperatorKind::dense_runs},
     {"dense runs in bf16", "dense-runs-bf16", OperatorKind::dense_runs_bf16, lossy},
     {"dense runs in int8", "dense-runs-int8", OperatorKind::dense_runs_int8, lossy},
+    {"wavelet runs", "wavelet-runs", OperatorKind::wavelet_runs, lossy},
 }};
 
 /// What only double can tell from nought would be a subnormal number in every product.
@@ -100,6 +103,9 @@ hal::Result<core::LinearOperator<T>> make_operator(const Response& seeing, std::
     case OperatorKind::dense_runs_bf16:
     case OperatorKind::dense_runs_int8:
       a.runs = kept.keep_view(dense_run_tables<T>(seeing, run_values_of(a.kind)).value());
+      break;
+    case OperatorKind::wavelet_runs:
+      a.wavelet = kept.keep_view(wavelet_run_tables<T>(seeing));
       break;
     case OperatorKind::dense:
       fill_dense(seeing, a, kept);
@@ -182,6 +188,13 @@ hal::Result<OperatorChoice> as_asked(const Response& seeing, OperatorKind kind) 
       if (seeing.cols() < least_run_pixels) {
         return refused("a run has at least " + std::to_string(least_run_pixels) + " pixels, the picture has " +
                        std::to_string(seeing.cols()) + "; expected dense or csr");
+      }
+      return OperatorChoice{kind, {}, {}};
+    case OperatorKind::wavelet_runs:
+      if (!wavelets_fit(seeing)) {
+        return refused("wavelet runs want a picture of " + std::to_string(least_wavelet_side) +
+                       " pixels a side or more, this one has " + std::to_string(seeing.image_rows()) + " x " +
+                       std::to_string(seeing.image_cols()) + "; expected dense-runs, dense or csr");
       }
       return OperatorChoice{kind, {}, {}};
   }

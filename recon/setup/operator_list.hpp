@@ -54,9 +54,10 @@ struct OperatorChoice {
 };
 
 /// The quickest form for a response, by the number of entries, differences and run values: running sums where rows are
-/// flat runs, dense runs where they are other runs, else dense or sparse. Never a lossy one. `asked` sets the form:
-/// error unsupported, saying which would do, when running sums have no fewer differences than there are entries, the
-/// picture is too small for a run or too large for running sums, or sparse entries outnumber 32 bits.
+/// flat runs, dense runs where they are other runs, else dense or sparse. Never a lossy one
+/// (recon/setup/rounded_form.hpp). `asked` sets the form: error unsupported, saying which would do, when running sums
+/// have no fewer differences than there are entries, the picture is too small for a run or too large for running sums,
+/// or sparse entries outnumber 32 bits.
 [[nodiscard]] hal::Result<OperatorChoice> choose_operator(const Response& seeing, std::optional<OperatorKind> asked);
 
 }  // namespace compueye::recon

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "recon/setup/operator_list.hpp"
+#include "recon/setup/wavelet_rounding.hpp"
 
 namespace compueye::recon {
 
@@ -35,6 +36,7 @@ float float_of_bf16(std::uint16_t bits) noexcept {
 
 Response quantised(const Response& response, OperatorKind kind) {
   if (!is_lossy(kind)) return response;
+  if (kind == OperatorKind::wavelet_runs) return wavelets_fit(response) ? rounded_in_wavelets(response) : response;
   std::vector<std::int64_t> row_start{0};
   std::vector<std::int32_t> columns;
   std::vector<double> values;

@@ -13,7 +13,8 @@ namespace compueye::recon {
 /// Quantising twice is quantising once.
 ///
 /// bf16: 8 bits of mantissa, rounding to nearest, ties to even. int8: the row's largest magnitude over 127 times a
-/// whole number; a row whose largest entry is below least_row_peak has no scale and becomes blind.
+/// whole number; a row whose largest entry is below least_row_peak has no scale and becomes blind. Wavelet runs:
+/// recon/setup/wavelet_rounding.hpp; a picture that they do not fit stays as it is.
 [[nodiscard]] Response quantised(const Response& response, OperatorKind kind);
 
 /// Whether rounding leaves what the rows tell beyond the mean brightness of the picture: ||A - rounded||_F is at most

@@ -127,6 +127,23 @@ TEST_CASE("every setting gives the same bits again from its frozen bytes alone")
   CHECK(kinds.size() >= 4);
 }
 
+TEST_CASE("forms of A that have to be asked for give the same bits again from their frozen bytes") {
+  for (const recon::OperatorKind kind : {recon::OperatorKind::dense_runs, recon::OperatorKind::dense_runs_bf16,
+                                         recon::OperatorKind::dense_runs_int8, recon::OperatorKind::wavelet_runs}) {
+    CAPTURE(static_cast<int>(kind));
+    recon::Objective objective;
+    objective.lambda = 0.1;
+    recon::Plan plan;
+    plan.iterations = 5;
+    plan.op = kind;
+    const auto solver = recon::Reconstructor::create(nominal(5, 40.0, {41, 44, 20.0, 20.0, 30.0}), objective, plan);
+    REQUIRE(solver);
+    CHECK(solver->operating_point().op == kind);
+    Copy copy(frozen(*solver, sample_for(*solver)));
+    REQUIRE(copy.thaw_any([&](const auto& frame) { check_same_bits(frame, *solver); }) == recon::core::Thawed::ready);
+  }
+}
+
 TEST_CASE("a bound that is not there survives freezing") {
   recon::Objective objective;
   objective.constraint = recon::ConstraintKind::nonnegative;

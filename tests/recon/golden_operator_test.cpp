@@ -102,4 +102,6 @@ TEST_CASE("golden bits of operators") {
   CHECK(golden_of(uneven, OperatorKind::dense_runs) == 5766729431095455553ULL);
   CHECK(golden_of(uneven, OperatorKind::dense_runs_bf16) == 2544825961234364105ULL);
   CHECK(golden_of(uneven, OperatorKind::dense_runs_int8) == 15352324090456900888ULL);
+  CHECK(golden_of(flat, OperatorKind::wavelet_runs) == 7933778644469218480ULL);
+  CHECK(golden_of(uneven, OperatorKind::wavelet_runs) == 6945605175105901756ULL);
 }

@@ -140,8 +140,9 @@ TEST_CASE("every operator and basis has the same bits with one, two, three and f
                         BasisKind::tv);
   const Response some = square.select_rows(std::vector<std::int32_t>{3, 7, 20, 21, 40});
   check_operator<float>(some, side, OperatorKind::running_sums, OperatorKind::running_sums, BasisKind::identity);
-  for (const OperatorKind kind : {OperatorKind::dense, OperatorKind::csr, OperatorKind::dense_runs,
-                                  OperatorKind::dense_runs_bf16, OperatorKind::dense_runs_int8}) {
+  for (const OperatorKind kind :
+       {OperatorKind::dense, OperatorKind::csr, OperatorKind::dense_runs, OperatorKind::dense_runs_bf16,
+        OperatorKind::dense_runs_int8, OperatorKind::wavelet_runs}) {
     CAPTURE(recon::name(kind));
     check_operator<float>(uneven, side, kind, kind, BasisKind::haar);
     check_operator<double>(uneven, side, kind, kind, BasisKind::dft);

@@ -20,7 +20,7 @@
 #include "hal/try.hpp"
 #include "recon/option_names.hpp"
 #include "recon/setup/penalty_rule.hpp"
-#include "recon/setup/quantised_response.hpp"
+#include "recon/setup/rounded_form.hpp"
 
 namespace compueye::firmware {
 namespace {
@@ -171,8 +171,9 @@ Result<void> add_board_figures(const Board& board, const recon::Progress& progre
   const LivingResponse living = TRY(living_response(board, progress));
   figures.add("measured", value_of(living.measured.get()));
   if (living.measured) figures.line("measured", measured_sentence);
-  const std::optional<recon::OperatorKind> op = board.plan.op;
-  const recon::Response a = recon::quantised(living.response, op.value_or(recon::OperatorKind::csr));
+  const auto form = recon::rounded_form(living.response, board.plan.op);
+  const std::optional<recon::OperatorKind> op = form ? form->kind : board.plan.op;
+  const recon::Response& a = form ? form->response : living.response;
   const auto seeing = static_cast<int>(a.seeing_rows().size());
   figures.add("seeing_channels", seeing, "seeing channels", "{:,} of " + grouped(a.rows()));
   figures.add("entries", a.stored_entries(), "response entries", "{:,}");

@@ -117,7 +117,7 @@ void add_way(std::vector<Setting>& all) {
            .option_of("reconstruct", "--relaxation", "V")
            .only_of([](const SolverRow& row) { return row.relaxes; }, "over-relaxation"),
        Row("operator",
-           "how A is applied; auto is the quickest that keeps every digit, bf16 and int8 round the response")
+           "how A is applied; auto is the quickest that is as exact as what was measured, bf16 and int8 round more")
            .one_of(operator_words())
            .otherwise("auto")
            .option_of("reconstruct", "--operator", "NAME")

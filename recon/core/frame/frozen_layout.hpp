@@ -16,7 +16,7 @@ namespace compueye::recon::core {
 // on the way: tests/recon/frozen_frame_test.cpp solves every setting once more from its bytes.
 
 inline constexpr std::uint64_t frozen_magic = 0x4559454E5A4F5246;  // "FROZNEYE"
-inline constexpr std::uint64_t frozen_version = 5;  // goes up whenever this file, or a method's fields(), changes
+inline constexpr std::uint64_t frozen_version = 6;  // goes up whenever this file, or a method's fields(), changes
 inline constexpr std::size_t frozen_alignment = 64;
 inline constexpr std::size_t frozen_name_words = 2;  // of eight characters, for the name of the method
 
@@ -77,6 +77,26 @@ void describe(DenseRuns<float>& runs, Archive& archive) {
 }
 
 template <class Archive>
+void describe(WaveletRuns<float>& wavelet, Archive& archive) {
+  archive.number(wavelet.picture.rows);
+  archive.number(wavelet.picture.cols);
+  archive.number(wavelet.blocks);
+  archive.number(wavelet.bands);
+  const std::size_t pieces = wavelet.blocks * wavelet.bands;
+  const auto tiles = [&](WaveletRuns<float>::Tiles& list, std::size_t words) {
+    archive.table(list.first, pieces + 1);
+    const std::size_t count = list.first == nullptr ? 0 : list.first[pieces];
+    archive.table(list.place, count);
+    archive.table(list.words, words * count);
+  };
+  tiles(wavelet.averages, WaveletRuns<float>::average_words);
+  tiles(wavelet.details, WaveletRuns<float>::detail_words);
+  archive.table(wavelet.scale, WaveletRuns<float>::rows_at_once * wavelet.blocks);
+  archive.table(wavelet.row, WaveletRuns<float>::rows_at_once * wavelet.blocks);
+  archive.table(wavelet.band, wavelet.bands + 1);
+}
+
+template <class Archive>
 void describe(DeflatedStep<float>& step, Archive& archive) {
   archive.number(step.order);
   archive.number(step.classes);
@@ -106,6 +126,7 @@ void describe(LinearOperator<float>& a, Archive& archive) {
   archive.table(a.values, dense ? a.rows * a.cols : entries);
   describe(a.sums, archive);
   describe(a.runs, archive);
+  describe(a.wavelet, archive);
 }
 
 template <class Archive>

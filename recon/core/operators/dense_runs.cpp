@@ -1,5 +1,6 @@
 #include "recon/core/operators/dense_runs.hpp"
 
+#include "recon/core/operators/packed_rows.hpp"
 #include "recon/core/parts/multiversion.hpp"
 
 namespace compueye::recon::core {
@@ -14,34 +15,8 @@ constexpr std::size_t width = 4;
 #endif
 constexpr std::size_t vectors = 16 / width;
 
-using Words = std::int32_t __attribute__((vector_size(4 * width)));
-using Floats = float __attribute__((vector_size(4 * width)));
 template <class T>
-struct VectorOf;
-template <>
-struct VectorOf<float> {
-  using type = Floats;
-};
-template <>
-struct VectorOf<double> {
-  using type = double __attribute__((vector_size(8 * width)));
-};
-template <class T>
-using Vector = typename VectorOf<T>::type;
-
-template <class V, class T>
-COMPUEYE_INLINE V load(const T* from) {
-  static_assert(sizeof(V) == sizeof(T) * width);
-  V v;
-  __builtin_memcpy(&v, from, sizeof(V));
-  return v;
-}
-
-/// Entries of the four rows of a block at `width` pixels.
-template <class T>
-struct FourRows {
-  Vector<T> of[4];
-};
+using Vector = Wide<T, width>;
 
 template <class T>
 struct FullValues {
@@ -49,10 +24,10 @@ struct FullValues {
   const T* at;
   explicit FullValues(const DenseRuns<T>& a) : at(a.values) {}
   void seek(std::size_t group) { at += 64 * group; }
-  [[nodiscard]] COMPUEYE_INLINE FourRows<T> entries(std::size_t g, std::size_t h) const {
+  [[nodiscard]] COMPUEYE_INLINE FourRows<T, width> entries(std::size_t g, std::size_t h) const {
     const T* from = at + 64 * g + width * h;
-    return {
-        {load<Vector<T>>(from), load<Vector<T>>(from + 16), load<Vector<T>>(from + 32), load<Vector<T>>(from + 48)}};
+    return {{load_wide<Vector<T>>(from), load_wide<Vector<T>>(from + 16), load_wide<Vector<T>>(from + 32),
+             load_wide<Vector<T>>(from + 48)}};
   }
 };
 
@@ -62,14 +37,9 @@ struct Bf16Values {
   const std::uint32_t* at;
   explicit Bf16Values(const DenseRuns<T>& a) : at(a.words) {}
   void seek(std::size_t group) { at += 32 * group; }
-  [[nodiscard]] COMPUEYE_INLINE FourRows<T> entries(std::size_t g, std::size_t h) const {
-    constexpr auto upper = static_cast<std::int32_t>(0xFFFF0000U);
+  [[nodiscard]] COMPUEYE_INLINE FourRows<T, width> entries(std::size_t g, std::size_t h) const {
     const std::uint32_t* from = at + 32 * g + width * h;
-    const auto pair = load<Words>(from), next = load<Words>(from + 16);
-    return {{widened(pair << 16), widened(pair & upper), widened(next << 16), widened(next & upper)}};
-  }
-  static COMPUEYE_INLINE Vector<T> widened(Words bits) {
-    return __builtin_convertvector(reinterpret_cast<Floats>(bits), Vector<T>);
+    return bf16_rows<T, width>(from, from + 16);
   }
 };
 
@@ -79,11 +49,8 @@ struct Int8Values {
   const std::uint32_t* at;
   explicit Int8Values(const DenseRuns<T>& a) : at(a.words) {}
   void seek(std::size_t group) { at += 16 * group; }
-  [[nodiscard]] COMPUEYE_INLINE FourRows<T> entries(std::size_t g, std::size_t h) const {
-    const auto four = load<Words>(at + 16 * g + width * h);
-    return {{__builtin_convertvector((four << 24) >> 24, Vector<T>),
-             __builtin_convertvector((four << 16) >> 24, Vector<T>),
-             __builtin_convertvector((four << 8) >> 24, Vector<T>), __builtin_convertvector(four >> 24, Vector<T>)}};
+  [[nodiscard]] COMPUEYE_INLINE FourRows<T, width> entries(std::size_t g, std::size_t h) const {
+    return int8_rows<T, width>(at + 16 * g + width * h);
   }
 };
 
@@ -108,8 +75,8 @@ COMPUEYE_INLINE void forward_blocks(const DenseRuns<T>& a, const T* x, T* y, std
       const std::size_t groups = a.groups[r];
       for (std::size_t g = 0; g < groups; ++g) {
         for (std::size_t h = 0; h < vectors; ++h) {
-          const auto v = load<Vector<T>>(pixels + 16 * g + width * h);
-          const FourRows<T> entry = values.entries(g, h);
+          const auto v = load_wide<Vector<T>>(pixels + 16 * g + width * h);
+          const FourRows<T, width> entry = values.entries(g, h);
           s0[h] += entry.of[0] * v;
           s1[h] += entry.of[1] * v;
           s2[h] += entry.of[2] * v;
@@ -133,8 +100,8 @@ COMPUEYE_INLINE void adjoint_runs(const DenseRuns<T>& a, Values values, std::siz
     const std::size_t groups = a.groups[r];
     for (std::size_t g = 0; g < groups; ++g) {
       for (std::size_t h = 0; h < vectors; ++h) {
-        auto v = load<Vector<T>>(pixels + 16 * g + width * h);
-        const FourRows<T> entry = values.entries(g, h);
+        auto v = load_wide<Vector<T>>(pixels + 16 * g + width * h);
+        const FourRows<T, width> entry = values.entries(g, h);
         v += entry.of[0] * y[0];
         v += entry.of[1] * y[1];
         v += entry.of[2] * y[2];

@@ -85,6 +85,8 @@ void forward_of(const LinearOperator<T>& a, const T* x, T* y, T* scratch) noexce
     case OperatorKind::dense_runs_bf16:
     case OperatorKind::dense_runs_int8:
       return forward(a.runs, x, y, a.crew);
+    case OperatorKind::wavelet_runs:
+      return forward(a.wavelet, x, y, scratch, a.crew);
     case OperatorKind::dense:
       break;
   }
@@ -106,6 +108,8 @@ void adjoint_of(const LinearOperator<T>& a, const T* y, T* x, T* scratch) noexce
     case OperatorKind::dense_runs_bf16:
     case OperatorKind::dense_runs_int8:
       return adjoint_accumulate(a.runs, y, x, a.crew);
+    case OperatorKind::wavelet_runs:
+      return adjoint_accumulate(a.wavelet, y, x, scratch, a.crew);
     case OperatorKind::dense:
       break;
   }
@@ -129,6 +133,8 @@ std::size_t bytes_of(const LinearOperator<T>& a) noexcept {
     case OperatorKind::dense_runs_bf16:
     case OperatorKind::dense_runs_int8:
       return bytes(a.runs);
+    case OperatorKind::wavelet_runs:
+      return bytes(a.wavelet);
     case OperatorKind::csr:
       return a.row_start[a.rows] * (sizeof(T) + sizeof(std::int32_t)) + (a.rows + 1) * sizeof(std::uint32_t);
     case OperatorKind::dense:
@@ -148,6 +154,8 @@ std::size_t flops_of(const LinearOperator<T>& a) noexcept {
     case OperatorKind::dense_runs_bf16:
     case OperatorKind::dense_runs_int8:
       return flops(a.runs);
+    case OperatorKind::wavelet_runs:
+      return flops(a.wavelet);
     case OperatorKind::csr:
       return a.row_start[a.rows];
     case OperatorKind::dense:

@@ -5,6 +5,7 @@
 
 #include "recon/core/operators/dense_runs.hpp"
 #include "recon/core/operators/running_sums.hpp"
+#include "recon/core/operators/wavelet_runs.hpp"
 #include "recon/core/parts/crew.hpp"
 
 namespace compueye::recon {
@@ -17,7 +18,8 @@ enum class OperatorKind : std::uint8_t {
   running_sums_diagonal,
   dense_runs,
   dense_runs_bf16,
-  dense_runs_int8
+  dense_runs_int8,
+  wavelet_runs
 };
 
 }  // namespace compueye::recon
@@ -26,7 +28,7 @@ namespace compueye::recon::core {
 
 /// A (rows x cols) as the frame path sees it: a view of tables that somebody else owns.
 /// dense: values row-major. csr: row m holds entries row_start[m] .. row_start[m+1]-1. Else: core/running_sums.hpp,
-/// core/dense_runs.hpp.
+/// core/dense_runs.hpp, core/wavelet_runs.hpp.
 template <class T>
 struct LinearOperator {
   OperatorKind kind = OperatorKind::dense;
@@ -37,10 +39,13 @@ struct LinearOperator {
   const std::int32_t* columns = nullptr;
   RunningSums<T> sums = {};
   DenseRuns<T> runs = {};
+  WaveletRuns<T> wavelet = {};
   Crew crew = {};  ///< that shares the work, but for the adjoint of csr
 
-  /// Elements of T that forward() and adjoint_accumulate() want as scratch; none but for running sums.
+  /// Elements of T that forward() and adjoint_accumulate() want as scratch; none but for running sums and
+  /// wavelet runs.
   [[nodiscard]] std::size_t scratch_size() const noexcept {
+    if (wavelet.picture.rows > 0) return wavelet.scratch_size(crew.workers);
     if (sums.tables == 0) return 0;
     return crew.workers > 1 ? sums.shared_scratch_size() : sums.scratch_size();
   }

@@ -9,6 +9,17 @@
 #define COMPUEYE_MULTIVERSION __attribute__((noinline))
 #endif
 
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(COMPUEYE_NO_MULTIVERSION)
+/// A function that is written with vectors of 64 bytes, which no other level than this has registers for: to be called
+/// only where has_widest_vectors().
+#define COMPUEYE_WIDEST __attribute__((target("avx512f"), noinline))
+namespace compueye::recon::core {
+[[nodiscard]] inline bool has_widest_vectors() noexcept {
+  return __builtin_cpu_supports("avx512f") != 0;
+}
+}  // namespace compueye::recon::core
+#endif
+
 #if defined(COMPUEYE_NO_MULTIVERSION)
 // Sanitizers put several checks beside every access: copies of those in every caller take the compiler minutes.
 #define COMPUEYE_INLINE inline
