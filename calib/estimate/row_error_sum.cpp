@@ -65,7 +65,7 @@ RowErrors::ByKind RowErrorSum::variances(const Eigen::MatrixXd& covariance) cons
     whole += gradients_[j].variance(covariance) + entries_[j].hidden_variance;
     norm += entries_[j].value * entries_[j].value;
   }
-  of(found, RowErrorKind::rest) = std::max(whole - among_kinds, 0.0);
+  of(found, RowErrorKind::fields) = std::max(whole - among_kinds, 0.0);
   for (double& each : found) each = norm > 0.0 ? each / norm : 0.0;
   return found;
 }

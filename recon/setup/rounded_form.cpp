@@ -1,6 +1,8 @@
 #include "recon/setup/rounded_form.hpp"
 
+#include <cstddef>
 #include <utility>
+#include <vector>
 
 #include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
@@ -34,7 +36,15 @@ std::optional<RoundedForm> rounded_form(const Response& response, std::optional<
 
 bool is_rounded_in_wavelets(const Response& response) {
   if (!wavelets_fit(response) || response.nonzeros() < streamed_entries) return false;
-  return rounded_in_wavelets(response).content_hash() == response.content_hash();
+  WaveletRows rows(response);
+  std::vector<double> row(static_cast<std::size_t>(response.cols()), 0.0);
+  for (const std::int32_t m : response.seeing_rows()) {
+    response.for_each_in_row(m, [&](std::int32_t n, double v) { row[static_cast<std::size_t>(n)] = v; });
+    rows.round(m);
+    if (rows.picture() != row) return false;
+    response.for_each_in_row(m, [&](std::int32_t n, double) { row[static_cast<std::size_t>(n)] = 0.0; });
+  }
+  return true;
 }
 
 }  // namespace compueye::recon
