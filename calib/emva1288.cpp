@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "calib/median.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::calib {
@@ -32,22 +33,37 @@ Statistics means_of(const LightSeries& series, std::size_t channels) {
   return s;
 }
 
+/// Channels that vary no more than others under the same light: one that blinks would pass for a lamp that does.
+std::vector<double> steady_ones(const LightSeries& series, const std::vector<double>& picture, const Statistics& s) {
+  std::vector<double> spread(picture.size());
+  for (std::size_t n = 0; n < series.codes.size(); ++n) {
+    const std::size_t m = n % picture.size();
+    spread[m] += std::pow(series.codes[n] - s.mean[m], 2);
+  }
+  constexpr double most = 30.0;
+  const double limit = most * median(spread);
+  std::vector<double> steady = picture;
+  for (std::size_t m = 0; m < picture.size(); ++m) steady[m] = spread[m] <= limit ? picture[m] : 0.0;
+  return steady;
+}
+
 /// Temporal variances, what each frame has in common with `picture` (a number a channel; all 0: nothing) taken off.
 void add_variances(const LightSeries& series, const std::vector<double>& picture, Statistics& s) {
   const std::size_t channels = picture.size();
+  const std::vector<double> steady = steady_ones(series, picture, s);
   double power = 0.0;
-  for (const double each : picture) power += each * each;
+  for (const double each : steady) power += each * each;
   for (std::size_t f = 0; f < s.frames; ++f) {
     double common = 0.0;
     const std::int32_t* codes = series.codes.data() + f * channels;
-    for (std::size_t m = 0; m < channels; ++m) common += picture[m] * (codes[m] - s.mean[m]);
+    for (std::size_t m = 0; m < channels; ++m) common += steady[m] * (codes[m] - s.mean[m]);
     common = power > 0.0 ? common / power : 0.0;
     for (std::size_t m = 0; m < channels; ++m) {
       s.variance[m] += std::pow(codes[m] - s.mean[m] - common * picture[m], 2);
     }
   }
   for (std::size_t m = 0; m < channels; ++m) {
-    const double left = power > 0.0 ? 1.0 - picture[m] * picture[m] / power : 1.0;
+    const double left = power > 0.0 ? 1.0 - steady[m] * picture[m] / power : 1.0;
     s.variance[m] = left > 0.0 ? s.variance[m] / static_cast<double>(s.frames - 1) / left : 0.0;
   }
 }
@@ -69,7 +85,12 @@ std::optional<double> saturation_lsb(const Transfer& t) {
   return t.signal[static_cast<std::size_t>(peak - t.variance.begin())];
 }
 
-std::optional<double> gain(const Transfer& t, double saturation) {
+/// Of the variance over the signal, with its standard error.
+struct Slope {
+  double value = 0.0, error = 0.0;
+};
+
+std::optional<Slope> gain_slope(const Transfer& t, double saturation) {
   double xy = 0.0, xx = 0.0, error = 0.0;
   for (std::size_t k = 0; k < t.signal.size(); ++k) {
     const double x = t.signal[k];
@@ -78,8 +99,23 @@ std::optional<double> gain(const Transfer& t, double saturation) {
     xx += x * x;
     error += std::pow(x * t.variance_error[k], 2);
   }
-  if (!(xx > 0.0 && xy > 3.0 * std::sqrt(error))) return {};
-  return xy / xx;
+  if (!(xx > 0.0)) return {};
+  return Slope{xy / xx, std::sqrt(error) / xx};
+}
+
+constexpr double errors_above_nought = 3.0;
+
+/// The median channel's, where no single one can be told: of M channels it is known about sqrt(M) times better.
+std::optional<double> gain_of_all(const std::vector<Slope>& slopes) {
+  std::vector<double> values, errors;
+  for (const Slope& each : slopes) {
+    values.push_back(each.value);
+    errors.push_back(each.error);
+  }
+  if (values.size() < 2) return {};
+  const double error = 1.2533 * median(std::move(errors)) / std::sqrt(static_cast<double>(values.size()));
+  const double value = median(std::move(values));
+  return value > errors_above_nought * error ? std::optional(value) : std::nullopt;
 }
 
 /// Section 9: a line of least relative distances, and the mean of their absolute values.
@@ -124,15 +160,17 @@ std::optional<double> dark_slope(const std::vector<Statistics>& darks, std::size
   return (n * xy - x * y) / determinant;
 }
 
-ChannelNoise channel_noise(const Transfer& t, std::optional<double> dark_lsb_per_s) {
+ChannelNoise channel_noise(const Transfer& t, std::optional<double> dark_lsb_per_s, std::vector<Slope>& slopes) {
   ChannelNoise noise;
   noise.dark_noise_lsb = std::sqrt(t.dark_variance);
   const std::optional<double> saturation = saturation_lsb(t);
   const double reach = saturation.value_or(t.full_lsb);
   noise.linearity_error = linearity_error(t, reach);
-  noise.gain_lsb_per_e = gain(t, reach);
-  if (!noise.gain_lsb_per_e) return noise;
-  const double k = *noise.gain_lsb_per_e;
+  const std::optional<Slope> slope = gain_slope(t, reach);
+  if (slope) slopes.push_back(*slope);
+  if (!slope || !(slope->value > errors_above_nought * slope->error)) return noise;
+  const double k = slope->value;
+  noise.gain_lsb_per_e = k;
   const double dark_e2 = (std::max(t.dark_variance, least_dark_variance) - rounding_variance) / (k * k);
   noise.read_noise_e = std::sqrt(dark_e2);
   if (dark_lsb_per_s) noise.dark_current_e_per_s = *dark_lsb_per_s / k;
@@ -180,7 +218,7 @@ double mean_over(const Statistics& s, const std::vector<ChannelNoise>& channels)
 }
 
 void add_spread(const Statistics& dark, const std::vector<Statistics>& flats, double full_lsb, SensorNoise& noise) {
-  const std::optional<double> k = noise.median.gain_lsb_per_e;
+  const std::optional<double> k = median_of(noise.channels, &ChannelNoise::gain_lsb_per_e);
   if (!k) return;
   const double dark_spread = std::max(spatial_variance(dark, noise.channels), 0.0);
   noise.dsnu_e = std::sqrt(dark_spread) / *k;
@@ -268,6 +306,7 @@ Result<SensorNoise> sensor_noise(std::span<const LightSeries> series, int channe
     add_variances(*each, picture, flat);
   }
   SensorNoise noise;
+  std::vector<Slope> slopes;
   for (std::size_t m = 0; m < count; ++m) {
     Transfer t;
     t.full_lsb = full - dark.mean[m];
@@ -279,13 +318,14 @@ Result<SensorNoise> sensor_noise(std::span<const LightSeries> series, int channe
       t.variance_error.push_back(std::hypot(flat.variance[m], dark.variance[m]) *
                                  std::sqrt(2.0 / static_cast<double>(flat.frames - 1)));
     }
-    noise.channels.push_back(channel_noise(t, dark_slope(darks, m)));
+    noise.channels.push_back(channel_noise(t, dark_slope(darks, m), slopes));
   }
   for (const auto what : {&ChannelNoise::gain_lsb_per_e, &ChannelNoise::dark_noise_lsb, &ChannelNoise::read_noise_e,
                           &ChannelNoise::dark_current_e_per_s, &ChannelNoise::saturation_e,
                           &ChannelNoise::linearity_error, &ChannelNoise::dynamic_range}) {
     noise.median.*what = median_of(noise.channels, what);
   }
+  if (!noise.median.gain_lsb_per_e) noise.median.gain_lsb_per_e = gain_of_all(slopes);
   add_spread(dark, flats, full, noise);
   return noise;
 }

@@ -43,8 +43,10 @@ struct SensorNoise {
 ///
 /// A lamp's noise moves all channels together and would count as their own (0.1 % makes K 1.9 times too large at 500
 /// electrons per LSB). So the share of each frame that is proportional to the mean picture is taken off before
-/// variances are, and they are divided by what that leaves of independent noise (1 - 1/M for channels alike). K needs
-/// at least two channels, and is not told where it is not three standard errors above 0.
+/// variances are, and they are divided by what that leaves of independent noise (1 - 1/M for channels alike); channels
+/// that vary thirty times as much as the median one (that blink) have no part in saying what that share is. K needs at
+/// least two channels, and is not told where it is not three standard errors above 0; the median K is told also where
+/// few frames let no single channel's be, since all of them together know it better.
 ///
 /// Errors: usage (no series), out_of_range (channels, bits 1 .. 24, light or exposure), mismatch (codes are not whole
 /// frames, fewer than two, no dark of the flats' exposure, flats of several exposures).

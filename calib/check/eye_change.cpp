@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <string>
 
+#include "calib/median.hpp"
+
 namespace compueye::calib {
 namespace {
 
@@ -15,7 +17,7 @@ using hal::fail;
 using hal::Result;
 
 constexpr Eigen::Index axes = static_cast<Eigen::Index>(turn_axes), shared = 1 + axes;
-constexpr double question = false_alarms / 4.0;
+constexpr double question = false_alarms / 6.0;
 /// What slopes that are taken from pixels are wrong by, where cones have hard edges: a turn leaves so much unexplained.
 constexpr double slope_error = 0.25;
 
@@ -48,11 +50,12 @@ class Fit {
     }
   }
 
-  /// A channel of which no picture gives light tells nothing.
+  /// A channel whose light does not stand out of its noise tells nothing.
   [[nodiscard]] std::size_t leave_out_the_dark() {
+    constexpr double most_sigma = 0.1;
     std::size_t left = 0;
     for (std::size_t m = 0; m < width_; ++m) {
-      in_[m] = in_[m] != 0 && own(m).sigma < 1.0 ? 1 : 0;
+      in_[m] = in_[m] != 0 && own(m).sigma < most_sigma ? 1 : 0;
       left += in_[m];
     }
     return left;
@@ -190,6 +193,30 @@ void find_channels(Fit& fit, std::size_t judged, EyeChange& change) {
   }
 }
 
+/// Against the median channel, so that one that is hot now says nothing of the others.
+void find_dark(const CheckSamples& s, EyeChange& change) {
+  std::vector<double> moves, variances, whites;
+  for (std::size_t m = 0; m < s.judged.size(); ++m) {
+    if (s.judged[m] == 0 || !std::isfinite(s.dark_now[m])) continue;
+    moves.push_back(s.dark_now[m] - s.dark_then[m]);
+    variances.push_back(s.dark_variance[m]);
+    whites.push_back(s.then[m]);
+  }
+  const double white = median(whites), together = median(moves), count = static_cast<double>(moves.size());
+  if (!(white > 0.0)) return;
+  constexpr double of_a_median = 1.57;  // its variance over that of a mean
+  const double sigma = std::sqrt(of_a_median * median(variances) / count + s.dark_spread * s.dark_spread);
+  change.dark = {together / white, sigma / white, chance_of_normal(together / sigma)};
+  change.dark_changed = change.dark.chance < question && std::fabs(change.dark.value) > LeastChange::dark;
+  for (std::size_t m = 0; m < s.judged.size(); ++m) {
+    if (s.judged[m] == 0 || !std::isfinite(s.dark_now[m])) continue;
+    const double off = s.dark_now[m] - s.dark_then[m] - together, own = std::sqrt(s.dark_variance[m]);
+    const double chance = chance_of_normal(off / own);
+    if (chance >= question / count || std::fabs(off) <= LeastChange::one_dark * white) continue;
+    change.dark_channels.push_back({static_cast<int>(m), {off / white, own / white, chance}});
+  }
+}
+
 }  // namespace
 
 Result<EyeChange> eye_change(const CheckSamples& samples) {
@@ -197,13 +224,15 @@ Result<EyeChange> eye_change(const CheckSamples& samples) {
   const std::size_t count = samples.then.size();
   if (channels == 0 || count % channels != 0 || count == 0 || samples.judged.size() != channels ||
       samples.then_variance.size() != count || samples.now.size() != count || samples.now_variance.size() != count ||
-      samples.by_turn.size() != count) {
+      samples.by_turn.size() != count || samples.dark_then.size() != channels || samples.dark_now.size() != channels ||
+      samples.dark_variance.size() != channels) {
     return fail(ErrorCode::mismatch, "check",
                 "has samples, variances or slopes that are not of the same pictures and channels");
   }
-  if (!(samples.light_spread >= 0.0 && std::isfinite(samples.light_spread))) {
+  for (const double spread : {samples.light_spread, samples.dark_spread}) {
+    if (spread >= 0.0 && std::isfinite(spread)) continue;
     return fail(ErrorCode::out_of_range, "check",
-                "has a light that goes " + std::to_string(samples.light_spread) + " of itself, expected 0 or more");
+                "has a light or dark that goes " + std::to_string(spread) + " of itself, expected 0 or more");
   }
   Fit fit(samples);
   const std::size_t judged = fit.leave_out_the_dark();
@@ -212,6 +241,7 @@ Result<EyeChange> eye_change(const CheckSamples& samples) {
                 "finds " + std::to_string(judged) + " channels that are good and give light, expected at least 4");
   }
   EyeChange change;
+  find_dark(samples, change);
   find_channels(fit, judged, change);
   fit.solve();
   for (ChangedChannel& each : change.channels) each.change = fit.own(static_cast<std::size_t>(each.channel));

@@ -31,19 +31,20 @@ struct Begun {
   calib::Resumed done;
 };
 
+/// The last session, where it has no end: one before it was given up.
 Result<std::optional<calib::StoredSession>> cut_off(const EyeFile& file) {
-  for (calib::StoredSession& session : TRY(file.sessions())) {
-    if (!session.end) return std::optional(std::move(session));
-  }
-  return std::optional<calib::StoredSession>();
+  std::vector<calib::StoredSession> sessions = TRY(file.sessions());
+  if (sessions.empty() || sessions.back().end) return std::optional<calib::StoredSession>();
+  return std::optional(std::move(sessions.back()));
 }
 
 /// The same eye, in the same state, for the same plan. An eye's config_id names its stream, and is another every time.
 Result<void> check_same(const calib::Session& was, const calib::Session& is, const std::string& file) {
   const auto refuse = [&](std::string_view what, std::string_view before, std::string_view now) {
-    return fail(ErrorCode::mismatch, file,
-                fmt::format("holds a session with {} '{}', now it is '{}': put it back, or begin another file", what,
-                            before, now));
+    return fail(
+        ErrorCode::mismatch, file,
+        fmt::format("holds a session with {} '{}', now it is '{}': put it back, or begin another session by --give-up",
+                    what, before, now));
   };
   if (was.serial != is.serial) return refuse("serial", was.serial, is.serial);
   if (was.firmware != is.firmware) return refuse("firmware", was.firmware, is.firmware);
@@ -53,7 +54,8 @@ Result<void> check_same(const calib::Session& was, const calib::Session& is, con
   }
   if (was.plan != is.plan) {
     return fail(ErrorCode::mismatch, file,
-                "holds a session with another plan: give it the plan that it was begun with, or begin another file");
+                "holds a session with another plan: give it the plan that it was begun with, or begin another session "
+                "by --give-up");
   }
   return {};
 }
@@ -70,15 +72,17 @@ Result<calib::Resumed> captures_of(const EyeFile& file, std::int64_t session) {
 
 Result<void> check_begun(const CalibrationRequest& request, const EyeFile& file) {
   const bool begun = TRY(cut_off(file)).has_value();
-  if (begun == request.resume) return {};
+  if (begun == request.resume || request.give_up) return {};
   return fail(ErrorCode::usage, file.path(),
-              begun ? "holds a session that was cut off: go on with it by --resume, or begin another file"
+              begun ? "holds a session that was cut off: go on with it by --resume, or leave it as it is and begin "
+                      "another by --give-up"
                     : "holds no session that was cut off: leave out --resume");
 }
 
-Result<Begun> begin(const calib::Session& session, EyeFile& file) {
+/// A new session is none before its first capture: one that is refused its light leaves nothing. Its id is then 0.
+Result<Begun> begin(const CalibrationRequest& request, const calib::Session& session, const EyeFile& file) {
   const auto before = TRY(cut_off(file));
-  if (!before) return Begun{TRY(file.begin_session(session)), {}};
+  if (!before || request.give_up) return Begun{};
   TRY(check_same(before->begun, session, file.path()));
   return Begun{before->id, TRY(captures_of(file, before->id))};
 }
@@ -186,10 +190,12 @@ Result<std::int64_t> run_calibration(const CalibrationRequest& request, const Ca
     const calib::SessionEye seen{described.channels, described.bits, config_id};
     // Made before the file is touched: a plan that cannot be carried out leaves no session.
     TRY(SessionMachine::create(request.plan, seen, display.rows, display.cols, {}, 0));
-    const Begun begun = TRY(begin(session_of(request, bench, config_id), file));
+    const calib::Session session = session_of(request, bench, config_id);
+    Begun begun = TRY(begin(request, session, file));
     auto machine =
         TRY(SessionMachine::create(request.plan, seen, display.rows, display.cols, begun.done, bench.clock.now_ns()));
     const auto keep = [&](const calib::Capture& capture) -> Result<void> {
+      if (begun.id == 0) begun.id = TRY(file.begin_session(session));
       TRY(file.append_capture(begun.id, capture));
       return {};
     };

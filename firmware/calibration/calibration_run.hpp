@@ -33,6 +33,7 @@ inline constexpr std::string_view exposure_key = "exposure_ns";
 struct CalibrationRequest {
   calib::SessionPlan plan;
   bool resume = false;
+  bool give_up = false;       ///< a session that was cut off stays as it is, and a new one is begun
   double distance_mm = 0.0;   ///< of the light, from the lens tip
   std::string configuration;  ///< of eye and board, lines "key = value": what must not change within a session
   std::string program;        ///< name and version

@@ -1,5 +1,7 @@
 #include "firmware/calibration/eye_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +12,7 @@
 #include "calib/check/telling_patterns.hpp"
 #include "calib/emva1288.hpp"
 #include "calib/estimate/light_samples.hpp"
+#include "calib/median.hpp"
 #include "calib/patterns/pattern_family.hpp"
 #include "firmware/calibration/calibration_run.hpp"
 #include "firmware/calibration/plan_file.hpp"
@@ -46,17 +49,32 @@ Result<Found> newest_of_a_session(const calib::EyeFile& file, double distance_mm
     if (session != sessions.end()) found = Found{each.id, std::move(estimate), *session};
   }
   if (found) return std::move(*found);
+  std::string at;
+  for (const calib::StoredEstimate& each : TRY(file.estimates())) {
+    at += fmt::format("{}{:g}", at.empty() ? "; it has estimates at " : ", ", each.distance_mm);
+  }
   return fail(ErrorCode::not_found, file.path(),
-              "has no estimate of a session at " + std::to_string(distance_mm) +
-                  " mm that an eye could be compared with: calibrate it there first");
+              fmt::format("has no estimate of a session at {:g} mm that an eye could be compared with{}: calibrate it "
+                          "there first",
+                          distance_mm, at.empty() ? at : at + " mm"));
 }
 
 /// How far the light went in the session by itself, relative.
-double spread_of(const std::vector<double>& lamp) {
+double spread_of(const std::vector<double>& values) {
   double mean = 0.0, square = 0.0;
-  for (const double factor : lamp) mean += factor / static_cast<double>(lamp.size());
-  for (const double factor : lamp) square += (factor - mean) * (factor - mean);
-  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(lamp.size() - 1, 1)));
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  for (const double value : values) square += (value - mean) * (value - mean);
+  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(values.size() - 1, 1)));
+}
+
+/// The same of the dark levels of all channels together, LSB.
+double common_spread(const calib::Interleaved& darks, std::size_t channels) {
+  std::vector<double> together;
+  for (std::size_t d = 0; d < darks.count(); ++d) {
+    const auto first = darks.codes.begin() + static_cast<std::ptrdiff_t>(d * channels);
+    together.push_back(calib::median({first, first + static_cast<std::ptrdiff_t>(channels)}));
+  }
+  return spread_of(together);
 }
 
 /// Of a channel that is noisier than the median one; nothing that is less noisy is believed to be.
@@ -77,6 +95,7 @@ struct LookedBack {
   std::vector<double> own_noise;
   std::vector<calib::LinearityTable> linearity;
   calib::LightSamples light;
+  double dark_spread = 0.0;   ///< of all channels together, LSB
   double white_frames = 0.0;  ///< averaged in light.white
 };
 
@@ -99,6 +118,7 @@ Result<LookedBack> look_back(const calib::EyeFile& file, const calib::StoredSess
   back.own_noise = own_noise(sensor);
   TRY(calib::validate(taken.captures, back.noise, eye.geometry, eye.plane));
   back.light = calib::light_samples(taken.captures, back.noise, channels, pixels, {});
+  back.dark_spread = common_spread(taken.captures.darks, static_cast<std::size_t>(channels));
   back.linearity = std::move(taken.captures.linearity);
   return back;
 }
@@ -109,6 +129,11 @@ Result<std::vector<hal::Image>> first_patterns(const LookedBack& back, const hal
   const int count = std::min(back.light.patterns, patterns_looked_at);
   for (int p = 0; p < count; ++p) pictures.push_back(TRY(family.draw(plane.rows, plane.cols, back.plan.seed, p)));
   return pictures;
+}
+
+double noise_variance_lsb2(const calib::CodeNoise& noise) noexcept {
+  constexpr double rounding = 1.0 / 12.0;
+  return noise.read_noise_lsb * noise.read_noise_lsb + rounding;
 }
 
 /// Of a sample of `light`, in frames of one pattern.
@@ -148,12 +173,20 @@ Result<EyeCheck> EyeCheck::create(const calib::EyeFile& file, double distance_mm
   EyeCheck check;
   check.session_ = found.session.id;
   check.estimate_ = found.id;
+  check.bits_ = found.session.begun.bits;
   check.exposure_ns_ = exposure_of(found.session.begun);
   calib::CheckSamples& s = check.samples_;
   s.channels = eye.ommatidia();
   s.light_spread = spread_of(back.light.lamp);
   for (const hal::ChannelStatus status : found.estimate.status) {
     s.judged.push_back(status == hal::ChannelStatus::good ? 1 : 0);
+  }
+  s.dark_spread = back.dark_spread / unit_lsb;
+  for (std::size_t m = 0; m < back.light.dark_lsb.size(); ++m) {
+    s.dark_then.push_back(back.light.dark_lsb[m] / unit_lsb);
+    // The session's own darks are as many as weigh little beside four frames.
+    s.dark_variance.push_back(back.own_noise[m] * noise_variance_lsb2(back.noise) /
+                              (unit_lsb * unit_lsb * dark_frames) * 1.25);
   }
   add_then(back, told, s);
   s.by_turn = calib::turn_slopes(rows, eye, plane, hal::Image(plane.rows, plane.cols, 1.0F));
@@ -203,6 +236,7 @@ Result<calib::EyeChange> EyeCheck::judge(std::span<const calib::Capture> capture
   now.patterns.assign(captures.size() - 1, 0.0F);  // one pixel each: only their number counts
   const calib::LightSamples light = calib::light_samples(now, noise_, samples_.channels, 1, {});
   calib::CheckSamples samples = samples_;
+  for (const double dark : light.dark_lsb) samples.dark_now.push_back(dark / noise_.unit_lsb);
   for (std::size_t p = 0; p + 1 < captures.size(); ++p) {
     for (std::size_t m = 0; m < channels; ++m) {
       samples.now.push_back(light.at(p, m));

@@ -28,6 +28,7 @@ class EyeCheck {
   [[nodiscard]] const calib::SessionPlan& plan() const noexcept { return plan_; }
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
   [[nodiscard]] std::int64_t estimate() const noexcept { return estimate_; }
+  [[nodiscard]] int bits() const noexcept { return bits_; }  ///< of the session's codes
   /// What the session was exposed for, where that could be set.
   [[nodiscard]] std::optional<std::int64_t> exposure_ns() const noexcept { return exposure_ns_; }
   /// What is to be taken: no light, white, and the three patterns that tell most of a turn.
@@ -39,6 +40,7 @@ class EyeCheck {
  private:
   calib::SessionPlan plan_;
   std::int64_t session_ = 0, estimate_ = 0;
+  int bits_ = 0;
   std::optional<std::int64_t> exposure_ns_;
   std::vector<calib::Wanted> schedule_;
   calib::CheckSamples samples_;  // all but what is seen now

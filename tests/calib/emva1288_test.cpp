@@ -127,6 +127,28 @@ TEST_CASE("a lamp's noise that would double K is taken off what is the channels'
   CHECK_FALSE(single.median.read_noise_e.has_value());
 }
 
+TEST_CASE("a channel that blinks hides no other's noise, and few frames tell all channels' K though none's own") {
+  Bench bench(20.0);
+  bench.rig.board.sensor.read_noise_lsb = 1.0;
+  bench.frames = 12;
+  bench.take(0.0, 0.01);
+  bench.take(2000.0, 0.01);
+  std::vector<LightSeries> few;
+  constexpr std::size_t channels = 64;
+  for (const LightSeries& each : bench.series) {
+    LightSeries& kept = few.emplace_back(LightSeries{each.light, each.exposure_s, {}});
+    for (std::size_t n = 0; n < each.codes.size(); ++n) {
+      if (n % 1024 < channels) kept.codes.push_back(each.codes[n]);
+    }
+  }
+  const SensorNoise plain = sensor_noise(few, channels, 12).value();
+  check_near(plain.median.gain_lsb_per_e, 0.05, 0.25);
+  CHECK_FALSE(plain.dsnu_e.has_value());  // which asks for each channel's own
+  for (std::size_t f = 0; f < 12; f += 3) few.back().codes[f * channels + 51] = 100;
+  const SensorNoise blinking = sensor_noise(few, channels, 12).value();
+  check_near(blinking.median.gain_lsb_per_e, 0.05, 0.25);
+}
+
 TEST_CASE("four channels keep three quarters of their noise, and get it back") {
   Bench bench(20.0);
   bench.rig.board.sensor.read_noise_lsb = 1.0;

@@ -87,6 +87,8 @@ struct Bench {
     }
     samples.then_variance.assign(samples.then.size(), noise * noise);
     samples.now_variance = samples.then_variance;
+    samples.dark_then.assign(64, 0.5);
+    samples.dark_variance.assign(64, noise * noise / 4.0);
   }
 
   /// Both looks with noise, the second at `y`.
@@ -94,6 +96,9 @@ struct Bench {
     std::normal_distribution<double> normal(0.0, noise);
     CheckSamples drawn = samples;
     drawn.now = y;
+    std::normal_distribution<double> dark_noise(0.0, noise / 2.0);
+    if (drawn.dark_now.empty()) drawn.dark_now = drawn.dark_then;
+    for (double& value : drawn.dark_now) value += dark_noise(random);
     for (double& value : drawn.then) value += normal(random);
     for (double& value : drawn.now) value += normal(random);
     return eye_change(drawn).value();
@@ -176,7 +181,33 @@ TEST_CASE("a restless light hides a small gain, and is no alarm; dark, masked an
   dimmed[5] = 1e6;
   dimmed[6] = std::numeric_limits<double>::quiet_NaN();
   bench.samples.then[7] = bench.samples.then[71] = bench.samples.then[135] = bench.samples.then[199] = 0.0;
-  CHECK_FALSE(bench.judged(dimmed, random).changed());
+  const EyeChange untold = bench.judged(dimmed, random);
+  CAPTURE(untold.channels.size());
+  CAPTURE(untold.dark.value);
+  CAPTURE(untold.dark_channels.size());
+  CAPTURE(untold.turned);
+  CAPTURE(untold.rest_chi2);
+  CHECK_FALSE(untold.changed());
+}
+
+TEST_CASE("dark levels that went, all or one, are told as what they are") {
+  Bench bench;
+  std::mt19937_64 random(19);
+  bench.samples.dark_now.assign(64, 0.5 + 0.1);
+  const EyeChange all = bench.judged(bench.samples.then, random);
+  CHECK(all.dark_changed);
+  CHECK(all.dark.value * bench.samples.then[27] == doctest::Approx(0.1).epsilon(0.3));
+  CHECK(all.dark_channels.empty());
+  CHECK_FALSE(all.gain_changed);
+  bench.samples.dark_now.assign(64, 0.5);
+  bench.samples.dark_now[20] = 1.0;
+  const EyeChange one = bench.judged(bench.samples.then, random);
+  CHECK_FALSE(one.dark_changed);
+  REQUIRE(one.dark_channels.size() == 1);
+  CHECK(one.dark_channels.front().channel == 20);
+  bench.samples.dark_now.assign(64, 0.5 + 0.1);
+  bench.samples.dark_spread = 0.1;  // as in the session
+  CHECK_FALSE(bench.judged(bench.samples.then, random).changed());
 }
 
 TEST_CASE("several things at once are told apart") {
@@ -196,6 +227,7 @@ TEST_CASE("several things at once are told apart") {
 
 TEST_CASE("samples that do not belong together are refused") {
   Bench bench;
+  bench.samples.dark_now = bench.samples.dark_then;
   bench.samples.now = bench.samples.then;
   bench.samples.now.pop_back();
   test::check_error(eye_change(bench.samples), hal::ErrorCode::mismatch, "check", {});

@@ -222,6 +222,19 @@ TEST_CASE("a session does not go on before another light than it was begun with"
   auto second = bench.machine(resumed);
   test::check_error(bench.drive(second), hal::ErrorCode::mismatch, "reference", {"10", "5"});
   CHECK(bench.stored.size() == 30);
+
+  // Within the share that a lamp may change by, but not in all channels alike: another eye, or one that was moved.
+  bench.gain /= 0.9;
+  bench.spoil = [&](hal::SampleBlock& block) {
+    for (int c = 0; c < channels; c += 2) {
+      std::int32_t& code = bench.codes[static_cast<std::size_t>(c)];
+      code = static_cast<std::int32_t>(bench.dark + 1.06 * (code - bench.dark));
+    }
+    block.codes = bench.codes;
+  };
+  auto third = bench.machine(resumed);
+  test::check_error(bench.drive(third), hal::ErrorCode::mismatch, "reference", {"1", "--give-up"});
+  CHECK(bench.stored.size() == 30);
 }
 
 TEST_CASE("what is lost, overrun, saturated or of other settings is taken again, and counted") {

@@ -131,6 +131,24 @@ TEST_CASE("a session goes on with the same eye, configuration and plan alone, an
   test::check_error(bench.run(request), hal::ErrorCode::usage, bench.path, {"--resume"});
 }
 
+TEST_CASE("a session that is refused its light leaves none, and one that was cut off can be given up") {
+  Bench bench;
+  CalibrationRequest request = small_request();
+  CalibrationRequest dim = request;
+  dim.plan.least_signal_lsb = 1e6;
+  test::check_error(bench.run(dim), hal::ErrorCode::out_of_range, "light", {"1000000"});
+  CHECK(calib::EyeFile::open(bench.path, calib::EyeFileMode::read).value().sessions().value().empty());
+  REQUIRE_FALSE(bench.run(request, 4).has_value());
+  request.plan.patterns = 13;
+  request.give_up = true;
+  CHECK(bench.run(request).value() == 2);
+  request.give_up = false;
+  request.resume = true;
+  test::check_error(bench.run(request), hal::ErrorCode::usage, bench.path, {"--resume"});
+  request.resume = false;
+  CHECK(bench.run(request).value() == 3);
+}
+
 TEST_CASE("a plan file states what differs from the default, and its text gives the same plan again") {
   const calib::SessionPlan plain = parse_plan("", "p.toml").value();
   CHECK(text_of(plain) == text_of(calib::SessionPlan{}));

@@ -52,6 +52,7 @@ struct CalibrateRequest {
   LightWanted light;
   std::uint64_t seed = 0;
   bool resume = false;
+  bool give_up = false;
   bool check = false;
   bool budget = false;  ///< also of an eye where that takes long
   Overrides overrides;  ///< distance
@@ -130,6 +131,7 @@ Result<std::int64_t> take(const CalibrateRequest& o, const Board& board, const C
   CalibrationRequest request;
   if (!o.plan.empty()) request.plan = TRY(load_plan(o.plan));
   request.resume = o.resume;
+  request.give_up = o.give_up;
   request.distance_mm = board.object.distance_mm;
   request.configuration = configuration_of(board);
   request.program = COMPUEYE_VERSION;
@@ -173,6 +175,13 @@ Result<calib::StoredSession> taken(const CalibrateRequest& o, Board& board, std:
   return std::move(*std::ranges::find(sessions, id, &calib::StoredSession::id));
 }
 
+Result<void> check_bits(const hal::SampleSource& eye, const EyeCheck& check) {
+  const int bits = eye.describe().bits;
+  if (bits == check.bits()) return {};
+  return hal::fail(ErrorCode::mismatch, eye.describe().serial,
+                   fmt::format("gives codes of {} bits, its session had {}: set it as it was", bits, check.bits()));
+}
+
 /// What a check is to see of the board's eye now.
 Result<std::vector<calib::Capture>> seen_now(const CalibrateRequest& o, Board& board, const calib::EyeFile& file,
                                              const EyeCheck& check, Session& session) {
@@ -180,11 +189,13 @@ Result<std::vector<calib::Capture>> seen_now(const CalibrateRequest& o, Board& b
   const auto watch = [&](const calib::SessionProgress& p) { return teller.tell(p); };
   if (board.source.simulated()) {
     const SimulatedBench bench = TRY(simulated_bench(o, board));
+    TRY(check_bits(*bench.eye, check));
     return take_captures(check.plan(), check.schedule(), {*bench.eye, *bench.display, *bench.clock}, watch);
   }
   AttachedBench bench = TRY(attached_bench(o, board, session));
   board.source.serial = bench.eye->describe().serial;
   TRY(check_is_of(file, board));
+  TRY(check_bits(*bench.eye, check));
   if (check.exposure_ns()) TRY(bench.exposure.change(*check.exposure_ns()));
   return take_captures(check.plan(), check.schedule(), {*bench.eye, *bench.light, session.clock(), &bench.exposure},
                        watch);
@@ -224,6 +235,7 @@ Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   };
   const SessionEstimate made = TRY(estimate_session(*file, done, wanted, session.progress()));
   session.end_progress();
+  if (const std::string doubt = doubt_of(made); !doubt.empty()) session.note(doubt);
   Figures report = TRY(calibration_report(o.eye, teller.last(), done, made, *file));
   TRY(file->close());
   return session.print(std::move(report));
@@ -245,8 +257,10 @@ Action declare(OptionList& options) {
   options.settings("calibrate", o->overrides);
   options.add("--seed", o->seed, "of a simulated eye's noise");
   options.flag("--resume", o->resume, "go on with a session that was cut off, or with its estimate");
+  options.flag("--give-up", o->give_up, "leave a session that was cut off as it is, and begin another");
+  options.at("--give-up").excludes("--resume");
   options.flag("--check", o->check, "only ask whether the eye still sees as in its last session: 1 where it does not");
-  for (const char* other : {"--resume", "--plan"}) options.at("--check").excludes(other);
+  for (const char* other : {"--resume", "--give-up", "--plan"}) options.at("--check").excludes(other);
   options.flag("--budget", o->budget,
                "tell what errors of the rows do to pictures, also of a display beyond 4096 pixels, where that takes "
                "minutes");

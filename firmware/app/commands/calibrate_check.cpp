@@ -39,6 +39,8 @@ std::string list_of(const std::vector<calib::ChangedChannel>& channels) {
 Figures check_report(const std::string& file, const EyeCheck& check, const calib::EyeChange& change) {
   Value::List channels;
   for (const calib::ChangedChannel& each : change.channels) channels.emplace_back(figures_of(each));
+  Value::List darks;
+  for (const calib::ChangedChannel& each : change.dark_channels) darks.emplace_back(figures_of(each));
   Figures f{{"file", file},
             {"session", check.session()},
             {"estimate", check.estimate()},
@@ -57,6 +59,11 @@ Figures check_report(const std::string& file, const EyeCheck& check, const calib
                              {"sigma_z_deg", change.turn_sigma[2] * degrees},
                              {"chance", change.turn_chance}}},
             {"ommatidia", std::move(channels)},
+            {"dark", Figures{{"changed", change.dark_changed},
+                             {"value", change.dark.value},
+                             {"sigma", change.dark.sigma},
+                             {"chance", change.dark.chance}}},
+            {"dark_ommatidia", std::move(darks)},
             {"rest", Figures{{"changed", change.rest_changed},
                              {"chi2", change.rest_chi2},
                              {"share", change.rest_share},
@@ -69,6 +76,9 @@ Figures check_report(const std::string& file, const EyeCheck& check, const calib
                     change.turned ? "changed" : "as it was"));
   f.say(change.channels.empty() ? "ommatidia: none stands out\n"
                                 : fmt::format("ommatidia: {}\n", list_of(change.channels)));
+  f.say(fmt::format("dark levels: {:+.2f} % of white: {}{}\n", 100.0 * change.dark.value,
+                    change.dark_changed ? "changed" : "as they were",
+                    change.dark_channels.empty() ? "" : "; ommatidia " + list_of(change.dark_channels)));
   f.say(fmt::format("the rest: {:.2f} % of the light beyond noise (chi^2 {:.2f} a sample): {}\n",
                     100.0 * change.rest_share, change.rest_chi2, change.rest_changed ? "changed" : "as it was"));
   return f;
@@ -88,6 +98,9 @@ hal::Result<void> check_verdict(const std::string& file, const calib::EyeChange&
   }
   if (!change.channels.empty()) {
     add(fmt::format("ommatidia {} (clean them, else calibrate again)", list_of(change.channels)));
+  }
+  if (change.dark_changed || !change.dark_channels.empty()) {
+    add("dark levels (keep other light away and the eye as warm as it was, else calibrate again)");
   }
   if (change.rest_changed) add("something that is none of gain, pose or single ommatidia (calibrate again)");
   return hal::fail(hal::ErrorCode::mismatch, file, "is of an eye that has changed since: " + what);

@@ -80,4 +80,17 @@ hal::Result<Figures> calibration_report(const std::string& eye, const calib::Ses
       f.tell("a picture of the board's scene: " + budget_parts("budget") + "\n" + budget_outlook("budget") + "\n"));
 }
 
+std::string doubt_of(const SessionEstimate& made) {
+  constexpr double most_chi2 = 100.0;
+  const auto good = std::ranges::count(made.rows.rows, hal::ChannelStatus::good, &calib::RowEstimate::status);
+  const double chi2 = median_chi2(made.rows);
+  const auto channels = static_cast<std::ptrdiff_t>(made.rows.rows.size());
+  if (2 * good >= channels && chi2 <= most_chi2) return "";
+  return fmt::format(
+      "this estimate is not to be trusted ({} of {} channels are good, chi^2 {:.3g}): take more patterns, of blobs, "
+      "and "
+      "see to light and display; --eye uses it all the same, since it is the newest",
+      good, channels, chi2);
+}
+
 }  // namespace compueye::firmware

@@ -16,4 +16,7 @@ namespace compueye::firmware {
                                                       const calib::StoredSession& session, const SessionEstimate& made,
                                                       const calib::EyeFile& file);
 
+/// A sentence on an estimate that no picture should be trusted to; empty: none is needed.
+[[nodiscard]] std::string doubt_of(const SessionEstimate& made);
+
 }  // namespace compueye::firmware
