@@ -126,6 +126,7 @@ class Maker {
       }
       white_lsb_[m] = mean.value();
     }
+    find_blinking();
     for (std::size_t r = 0; r < references.count(); ++r) {
       double product = 0.0, square = 0.0;
       for (std::size_t m = 0; m < width_; ++m) {
@@ -135,6 +136,28 @@ class Maker {
         square += white_lsb_[m] * white_lsb_[m];
       }
       lamp_.push_back(square > 0.0 && product > 0.0 ? product / square : 1.0);
+    }
+  }
+
+  /// A channel that goes far more than the lamp does would be taken for the lamp, and make all others noisy.
+  void find_blinking() {
+    const std::size_t count = captures_.references.count();
+    if (count < 2) return;
+    std::vector<double> spreads(width_), relative;
+    for (std::size_t m = 0; m < width_; ++m) {
+      double squares = 0.0;
+      for (std::size_t r = 0; r < count; ++r) {
+        const double off = references_[r * width_ + m] - white_lsb_[m];
+        if (!std::isnan(off)) squares += off * off;
+      }
+      spreads[m] = squares / static_cast<double>(count - 1);
+      if (good(m) && white_lsb_[m] > 0.0) relative.push_back(spreads[m] / (white_lsb_[m] * white_lsb_[m]));
+    }
+    const double lamp = median(std::move(relative));
+    constexpr double most = 30.0;
+    for (std::size_t m = 0; m < width_; ++m) {
+      const double noise = variance_lsb2(white_lsb_[m]) / captures_.references.frames;
+      if (spreads[m] > most * (noise + lamp * white_lsb_[m] * white_lsb_[m])) mask(m, ChannelStatus::noisy);
     }
   }
 

@@ -225,12 +225,8 @@ TEST_CASE("a session does not go on before another light than it was begun with"
 
   // Within the share that a lamp may change by, but not in all channels alike: another eye, or one that was moved.
   bench.gain /= 0.9;
-  bench.spoil = [&](hal::SampleBlock& block) {
-    for (int c = 0; c < channels; c += 2) {
-      std::int32_t& code = bench.codes[static_cast<std::size_t>(c)];
-      code = static_cast<std::int32_t>(bench.dark + 1.06 * (code - bench.dark));
-    }
-    block.codes = bench.codes;
+  bench.spoil = [&](hal::SampleBlock&) {  // which shows these codes
+    for (std::size_t c = 0; c < bench.codes.size(); c += 2) bench.codes[c] += (bench.codes[c] - 40) / 16;
   };
   auto third = bench.machine(resumed);
   test::check_error(bench.drive(third), hal::ErrorCode::mismatch, "reference", {"1", "--give-up"});

@@ -136,3 +136,14 @@ TEST_CASE("calib: hot, noisy and saturated channels are told apart, and lost sam
   CHECK(std::isnan(samples.at(0, 7)));
   CHECK(std::isfinite(samples.at(1, 7)));
 }
+
+TEST_CASE("calib: a channel that blinks is noisy, and not taken for the lamp") {
+  Captures blinking = session();
+  for (std::size_t r = 0; r < blinking.references.count(); r += 3) blinking.references.codes[r * channels + 11] = dark;
+  const auto plain = made(session(), noise()), with = made(blinking, noise());
+  for (std::size_t m = 0; m < channels; ++m) {
+    CAPTURE(m);
+    CHECK(with.status[m] == (m == 11 ? ChannelStatus::noisy : ChannelStatus::good));
+  }
+  for (std::size_t p = 0; p < patterns; ++p) CHECK(with.lamp[p] == doctest::Approx(plain.lamp[p]).epsilon(2e-3));
+}
