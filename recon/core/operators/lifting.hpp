@@ -37,7 +37,8 @@ COMPUEYE_INLINE void lift(T* __restrict x, std::size_t n, std::size_t parity, T 
   std::size_t i = parity + 2;
   for (; i + 2 < n; i += 2) {
     T* to = x + i * lanes;
-    for (std::size_t k = 0; k < lanes; ++k) to[k] += c * (to[k - lanes] + to[k + lanes]);
+    const T *above = to - lanes, *below = to + lanes;
+    for (std::size_t k = 0; k < lanes; ++k) to[k] += c * (above[k] + below[k]);
   }
   for (; i < n; i += 2) at_end(i);
 }
