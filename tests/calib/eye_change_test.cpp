@@ -193,10 +193,10 @@ TEST_CASE("a restless light hides a small gain, and is no alarm; dark, masked an
 TEST_CASE("dark levels that went, all or one, are told as what they are") {
   Bench bench;
   std::mt19937_64 random(19);
-  bench.samples.dark_now.assign(64, 0.5 + 0.1);
+  bench.samples.dark_now.assign(64, 0.5 + 0.6);
   const EyeChange all = bench.judged(bench.samples.then, random);
   CHECK(all.dark_changed);
-  CHECK(all.dark.value * bench.samples.then[27] == doctest::Approx(0.1).epsilon(0.3));
+  CHECK(all.dark.value * bench.samples.then[27] == doctest::Approx(0.6).epsilon(0.3));
   CHECK(all.dark_channels.empty());
   CHECK_FALSE(all.gain_changed);
   bench.samples.dark_now.assign(64, 0.5);
@@ -205,8 +205,8 @@ TEST_CASE("dark levels that went, all or one, are told as what they are") {
   CHECK_FALSE(one.dark_changed);
   REQUIRE(one.dark_channels.size() == 1);
   CHECK(one.dark_channels.front().channel == 20);
-  bench.samples.dark_now.assign(64, 0.5 + 0.1);
-  bench.samples.dark_spread = 0.1;  // as in the session
+  bench.samples.dark_now.assign(64, 0.5 + 0.6);
+  bench.samples.dark_spread = 0.6;  // as in the session
   CHECK_FALSE(bench.judged(bench.samples.then, random).changed());
 }
 
