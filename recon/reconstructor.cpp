@@ -100,8 +100,7 @@ hal::Result<Reconstructor> Reconstructor::create(const Response& response, const
                                                  std::optional<Factor> factor, const Progress& progress) {
   const auto form = rounded_form(response, plan.op);
   Plan applied = plan;
-  if (form) applied.op = form->kind;
-  if (!form && plan.op && is_lossy(*plan.op)) applied.op.reset();
+  applied.op = applied_operator(form, plan.op);
   return create_as_applied(form ? form->response : response, objective, applied, std::move(factor), progress);
 }
 

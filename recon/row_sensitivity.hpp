@@ -12,8 +12,8 @@ namespace compueye::recon {
 /// What errors of measured rows do to a reconstruction, beside what noise does and what the eye does not tell anyway.
 struct RowSensitivity {
   /// NMSE added by rows that are off, each row by itself and in proportion to it, in units of (||errors of all rows|| /
-  /// ||all rows||)^2. By kind, at right
-  /// angles in this order: gain; pose (the row seen elsewhere); width (the row grown about its centre); the rest.
+  /// ||all rows||)^2. By kind, at right angles in this order: gain; pose (the row seen elsewhere); width (the row grown
+  /// about its centre); the rest.
   std::array<double, 4> kappa{};
   double noise = 0.0;        ///< NMSE added by white noise of the samples
   double unperturbed = 0.0;  ///< NMSE of a frame without any error, by what the eye does not see and lambda

@@ -97,6 +97,7 @@ struct LookedBack {
   calib::LightSamples light;
   double dark_spread = 0.0;   ///< of all channels together, LSB
   double white_frames = 0.0;  ///< averaged in light.white
+  double dark_frames = 0.0;   ///< averaged in light.dark_lsb
 };
 
 Result<LookedBack> look_back(const calib::EyeFile& file, const calib::StoredSession& session, double exposure_s,
@@ -107,18 +108,22 @@ Result<LookedBack> look_back(const calib::EyeFile& file, const calib::StoredSess
   back.plan = TRY(parse_plan(session.begun.plan, file.path()));
   SessionCaptures taken = TRY(session_captures(file, session, exposure_s));
   const calib::Interleaved& references = taken.captures.references;
-  if (taken.captures.count(pixels) == 0 || references.count() == 0) {
+  const calib::Interleaved& darks = taken.captures.darks;
+  const int patterns = taken.captures.count(pixels);
+  if (patterns == 0 || references.count() == 0 || darks.count() == 0) {
     return fail(ErrorCode::not_found, file.path(),
-                "has a session of " + std::to_string(taken.captures.count(pixels)) + " patterns and " +
-                    std::to_string(references.count()) + " references, expected some of both to compare with");
+                fmt::format("has a session of {} patterns, {} references and {} looks without light, expected some of "
+                            "each to compare with",
+                            patterns, references.count(), darks.count()));
   }
   back.white_frames = static_cast<double>(references.count()) * references.frames;
+  back.dark_frames = static_cast<double>(darks.count()) * darks.frames;
   const calib::SensorNoise sensor = TRY(calib::sensor_noise(taken.series, channels, session.begun.bits));
   back.noise = code_noise(sensor, unit_lsb, saturated_code(back.plan, session.begun.bits));
   back.own_noise = own_noise(sensor);
   TRY(calib::validate(taken.captures, back.noise, eye.geometry, eye.plane));
   back.light = calib::light_samples(taken.captures, back.noise, channels, pixels, {});
-  back.dark_spread = common_spread(taken.captures.darks, static_cast<std::size_t>(channels));
+  back.dark_spread = common_spread(darks, static_cast<std::size_t>(channels));
   back.linearity = std::move(taken.captures.linearity);
   return back;
 }
@@ -131,11 +136,6 @@ Result<std::vector<hal::Image>> first_patterns(const LookedBack& back, const hal
   return pictures;
 }
 
-double noise_variance_lsb2(const calib::CodeNoise& noise) noexcept {
-  constexpr double rounding = 1.0 / 12.0;
-  return noise.read_noise_lsb * noise.read_noise_lsb + rounding;
-}
-
 /// Of a sample of `light`, in frames of one pattern.
 double variance_of(const calib::LightSamples& samples, std::size_t pattern, double light, double own) {
   return own * samples.fixed_variance[pattern] + samples.light_variance[pattern] * std::max(light, 0.0);
@@ -144,9 +144,8 @@ double variance_of(const calib::LightSamples& samples, std::size_t pattern, doub
 /// What the session saw of white, then of the patterns `told`.
 void add_then(const LookedBack& back, const std::vector<std::size_t>& told, calib::CheckSamples& s) {
   const calib::LightSamples& light = back.light;
-  const double own_frames = light.patterns > 0 ? back.plan.frames : 1;
   for (std::size_t m = 0; m < static_cast<std::size_t>(s.channels); ++m) {
-    const double one_frame = variance_of(light, 0, light.white[m], back.own_noise[m]) * own_frames;
+    const double one_frame = variance_of(light, 0, light.white[m], back.own_noise[m]) * back.plan.frames;
     s.then.push_back(light.white[m]);
     s.then_variance.push_back(one_frame / back.white_frames);
   }
@@ -182,12 +181,7 @@ Result<EyeCheck> EyeCheck::create(const calib::EyeFile& file, double distance_mm
     s.judged.push_back(status == hal::ChannelStatus::good ? 1 : 0);
   }
   s.dark_spread = back.dark_spread / unit_lsb;
-  for (std::size_t m = 0; m < back.light.dark_lsb.size(); ++m) {
-    s.dark_then.push_back(back.light.dark_lsb[m] / unit_lsb);
-    // The session's own darks are as many as weigh little beside four frames.
-    s.dark_variance.push_back(back.own_noise[m] * noise_variance_lsb2(back.noise) /
-                              (unit_lsb * unit_lsb * dark_frames) * 1.25);
-  }
+  for (const double dark : back.light.dark_lsb) s.dark_then.push_back(dark / unit_lsb);
   add_then(back, told, s);
   s.by_turn = calib::turn_slopes(rows, eye, plane, hal::Image(plane.rows, plane.cols, 1.0F));
   const std::string_view family = TRY(calib::pattern_family(back.plan.family))->name;
@@ -204,6 +198,7 @@ Result<EyeCheck> EyeCheck::create(const calib::EyeFile& file, double distance_mm
   check.plan_ = std::move(back.plan);
   check.noise_ = back.noise;
   check.own_noise_ = std::move(back.own_noise);
+  check.dark_noise_ = 1.0 / dark_frames + 1.0 / back.dark_frames;
   check.linearity_ = std::move(back.linearity);
   return check;
 }
@@ -236,13 +231,17 @@ Result<calib::EyeChange> EyeCheck::judge(std::span<const calib::Capture> capture
   now.patterns.assign(captures.size() - 1, 0.0F);  // one pixel each: only their number counts
   const calib::LightSamples light = calib::light_samples(now, noise_, samples_.channels, 1, {});
   calib::CheckSamples samples = samples_;
-  for (const double dark : light.dark_lsb) samples.dark_now.push_back(dark / noise_.unit_lsb);
+  for (std::size_t m = 0; m < channels; ++m) {
+    // Without lamp and averaging: of one frame, as these are.
+    const double dark_variance = own_noise_[m] * light.fixed_variance.front() * dark_noise_;
+    samples.dark_now.push_back(light.dark_lsb[m] / noise_.unit_lsb);
+    samples.dark_variance.push_back(dark_variance);
+  }
   for (std::size_t p = 0; p + 1 < captures.size(); ++p) {
     for (std::size_t m = 0; m < channels; ++m) {
       samples.now.push_back(light.at(p, m));
-      // The dark that was taken off has noise of its own.
-      samples.now_variance.push_back(variance_of(light, p, light.at(p, m), own_noise_[m]) +
-                                     own_noise_[m] * light.fixed_variance[p] / dark_frames);
+      // Of both looks the dark level was taken off, which has noise of its own.
+      samples.now_variance.push_back(variance_of(light, p, light.at(p, m), own_noise_[m]) + samples.dark_variance[m]);
     }
   }
   return calib::eye_change(samples);

@@ -46,6 +46,7 @@ class EyeCheck {
   calib::CheckSamples samples_;  // all but what is seen now
   calib::CodeNoise noise_;
   std::vector<calib::LinearityTable> linearity_;
+  double dark_noise_ = 0.0;        // variance of the difference of the two dark levels over that of a frame
   std::vector<double> own_noise_;  // M: variance of a channel's read noise over the median one's, >= 1
 };
 

@@ -36,7 +36,7 @@ ReconstructorMaker::ReconstructorMaker(const recon::Response& response, std::opt
 hal::Result<recon::Reconstructor> ReconstructorMaker::make(const recon::Objective& objective, const recon::Plan& asked,
                                                            const recon::Progress& progress) {
   recon::Plan plan = asked;
-  if (rounded_) plan.op = rounded_->kind;
+  plan.op = recon::applied_operator(rounded_, asked.op);
   origin_ = FactorOrigin::made;
   // In double a factor is made anew every time: what is kept is in float32.
   const recon::Factor wanted = recon::Reconstructor::wanted_factor(response(), objective, plan);

@@ -31,9 +31,9 @@ class ReconstructorMaker {
     remembers  ///< keeps a copy of every factor that another reconstructor could want
   };
 
-  /// `response` must outlive the maker. A lossy `op`, or none, may round it (recon::rounded_form()), and the
-  /// factor is that of the rounded one. `cache` is
-  /// the folder that keeps factors from run to run; it need not exist, and empty there is none.
+  /// `response` must outlive the maker. A lossy `op`, or none, may round it (recon::rounded_form()), and the factor is
+  /// that of the rounded one. `cache` is the folder that keeps factors from run to run; it need not exist, and empty
+  /// there is none.
   ReconstructorMaker(const recon::Response& response, std::optional<recon::OperatorKind> op, std::string cache,
                      Memory memory = Memory::forgets);
   ReconstructorMaker(const ReconstructorMaker&) = delete;

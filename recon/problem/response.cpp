@@ -24,6 +24,11 @@ hal::Result<void> check_shape(int rows, int cols) {
       "is " + std::to_string(rows) + " x " + std::to_string(cols) + ", expected at least one row and one column");
 }
 
+bool is_power_of_two(double factor) noexcept {
+  int exponent = 0;
+  return std::frexp(factor, &exponent) == 0.5;
+}
+
 tl::unexpected<hal::Error> not_finite(std::int64_t row, std::int64_t col, double value) {
   return fail(ErrorCode::out_of_range, place,
               "entry (" + std::to_string(row) + ", " + std::to_string(col) + ") is " + std::to_string(value) +
@@ -161,6 +166,7 @@ Response Response::select_rows(std::span<const std::int32_t> rows, std::span<con
   r.cols_ = cols_;
   r.image_rows_ = image_rows_;
   r.image_cols_ = image_cols_;
+  if (std::all_of(scale.begin(), scale.end(), is_power_of_two)) r.rounded_for_ = rounded_for_;
   if (!is_dense()) r.row_start_.push_back(0);
   if (scale.empty() && only_empty_left_out(rows)) {
     for (const std::int32_t m : rows) r.row_start_.push_back(row_start_[static_cast<std::size_t>(m) + 1]);
@@ -191,6 +197,7 @@ Response Response::without_rows(std::span<const int> rows) const {
   r.cols_ = cols_;
   r.image_rows_ = image_rows_;
   r.image_cols_ = image_cols_;
+  r.rounded_for_ = rounded_for_;
   r.row_start_.push_back(0);
   std::vector<std::int32_t> columns;
   std::vector<double> values;

@@ -3,12 +3,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "hal/result.hpp"
 
 namespace compueye::recon {
+
+enum class OperatorKind : std::uint8_t;
 
 /// The measurement matrix A (M x N) of an eye: row m holds what every pixel gives to ommatidium m, in the unit "one
 /// fully seen pixel at white". A value type: nominal, measured, fitted or somebody else's, they are all one of these.
@@ -29,6 +32,15 @@ class Response {
   [[nodiscard]] hal::Result<Response> with_image(int image_rows, int image_cols) const& {
     return Response(*this).with_image(image_rows, image_cols);
   }
+
+  /// The same entries, said to be what rounding for a lossy form of A left; those who round tell, so that nobody has to
+  /// find out, or rounds again.
+  [[nodiscard]] Response said_to_be_rounded_for(OperatorKind kind) && {
+    rounded_for_ = kind;
+    return std::move(*this);
+  }
+  /// Nothing: the entries are as they were given.
+  [[nodiscard]] std::optional<OperatorKind> rounded_for() const noexcept { return rounded_for_; }
 
   [[nodiscard]] int rows() const noexcept { return rows_; }              ///< M
   [[nodiscard]] int cols() const noexcept { return cols_; }              ///< N
@@ -75,7 +87,8 @@ class Response {
   [[nodiscard]] std::vector<std::int32_t> seeing_rows() const;
 
   /// The given rows, each multiplied by its factor (`scale` empty: by 1). Rows may not repeat. Where that leaves out
-  /// nothing but empty rows of a sparse response, the entries are shared, not copied.
+  /// nothing but empty rows of a sparse response, the entries are shared, not copied. Rounded ones stay so by powers of
+  /// two.
   [[nodiscard]] Response select_rows(std::span<const std::int32_t> rows, std::span<const double> scale = {}) const;
 
   /// The given rows (ascending) empty, the others as they are, in sparse form: a dead ommatidium tells nothing, and
@@ -95,6 +108,7 @@ class Response {
   int image_rows_ = 0;
   int image_cols_ = 0;
   double squared_norm_ = 0.0;
+  std::optional<OperatorKind> rounded_for_;
   std::vector<std::int64_t> row_start_;
   /// Never changed, so that copies share them: they are a hundred megabytes of a large eye.
   std::shared_ptr<const std::vector<std::int32_t>> columns_;

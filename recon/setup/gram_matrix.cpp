@@ -23,7 +23,10 @@ GramMatrix::GramMatrix(const Response& response, MetricKind metric) : response_(
   if (const auto chosen = choose_operator(response, std::nullopt); chosen && sums(chosen->kind)) {
     sums_ = running_sum_tables<double>(response, chosen->images, chosen->transposed);
   }
-  if (!sums_ && is_rounded_in_wavelets(response)) wavelets_ = wavelet_run_tables<double>(response);
+  // Of few entries a product by runs is as quick as its tables are made.
+  if (response.rounded_for() == OperatorKind::wavelet_runs && response.nonzeros() >= streamed_entries) {
+    wavelets_ = wavelet_run_tables<double>(response);
+  }
   std::int64_t entry = 0;
   for (int m = 0; m < response.rows(); ++m) {
     first_run_.push_back(runs_.size());

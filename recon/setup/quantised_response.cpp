@@ -35,8 +35,9 @@ float float_of_bf16(std::uint16_t bits) noexcept {
 }
 
 Response quantised(const Response& response, OperatorKind kind) {
-  if (!is_lossy(kind)) return response;
-  if (kind == OperatorKind::wavelet_runs) return wavelets_fit(response) ? rounded_in_wavelets(response) : response;
+  if (!is_lossy(kind) || response.rounded_for() == kind) return response;
+  if (kind == OperatorKind::wavelet_runs && !wavelets_fit(response)) return response;
+  if (kind == OperatorKind::wavelet_runs) return rounded_in_wavelets(response).said_to_be_rounded_for(kind);
   std::vector<std::int64_t> row_start{0};
   std::vector<std::int32_t> columns;
   std::vector<double> values;
@@ -56,7 +57,10 @@ Response quantised(const Response& response, OperatorKind kind) {
   // The same shape with finite values: from_csr() has nothing to refuse.
   auto rounded =
       Response::from_csr(response.rows(), response.cols(), std::move(row_start), std::move(columns), std::move(values));
-  return std::move(*rounded).with_image(response.image_rows(), response.image_cols()).value();
+  return std::move(*rounded)
+      .with_image(response.image_rows(), response.image_cols())
+      .value()
+      .said_to_be_rounded_for(kind);
 }
 
 bool keeps_details(const Response& response, const Response& rounded) {

@@ -1,8 +1,6 @@
 #include "recon/setup/rounded_form.hpp"
 
-#include <cstddef>
 #include <utility>
-#include <vector>
 
 #include "recon/setup/operator_list.hpp"
 #include "recon/setup/quantised_response.hpp"
@@ -27,6 +25,8 @@ bool may_stand_for(const Response& response, const RoundedForm& form) {
 
 std::optional<RoundedForm> rounded_form(const Response& response, std::optional<OperatorKind> asked) {
   if (asked && !is_lossy(*asked)) return std::nullopt;
+  if (const auto kind = response.rounded_for(); kind && kind == asked.value_or(*kind))
+    return RoundedForm{*kind, response};
   if (!asked && !(wavelets_fit(response) && streams(response))) return std::nullopt;
   const OperatorKind kind = asked.value_or(OperatorKind::wavelet_runs);
   RoundedForm form{kind, quantised(response, kind)};
@@ -34,17 +34,10 @@ std::optional<RoundedForm> rounded_form(const Response& response, std::optional<
   return form;
 }
 
-bool is_rounded_in_wavelets(const Response& response) {
-  if (!wavelets_fit(response) || response.nonzeros() < streamed_entries) return false;
-  WaveletRows rows(response);
-  std::vector<double> row(static_cast<std::size_t>(response.cols()), 0.0);
-  for (const std::int32_t m : response.seeing_rows()) {
-    response.for_each_in_row(m, [&](std::int32_t n, double v) { row[static_cast<std::size_t>(n)] = v; });
-    rows.round(m);
-    if (rows.picture() != row) return false;
-    response.for_each_in_row(m, [&](std::int32_t n, double) { row[static_cast<std::size_t>(n)] = 0.0; });
-  }
-  return true;
+std::optional<OperatorKind> applied_operator(const std::optional<RoundedForm>& form,
+                                             std::optional<OperatorKind> asked) noexcept {
+  if (form) return form->kind;
+  return asked && is_lossy(*asked) ? std::nullopt : asked;
 }
 
 }  // namespace compueye::recon

@@ -13,6 +13,7 @@
 #include "firmware/calibration/eye_check.hpp"
 #include "firmware/calibration/session_estimate.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
+#include "tests/firmware/short_session.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/hal/error_check.hpp"
 #include "tests/source_folder.hpp"
@@ -62,13 +63,9 @@ class Calibrated {
   Calibrated() {
     board_.sensor.bits = 12;
     board_.sensor.full_scale = 64.0;
-    CalibrationRequest request;
-    request.plan.warm_up_s = 0.5;
-    request.plan.patterns = 32;
+    CalibrationRequest request = test::short_session(32);
     request.plan.dark_frames = request.plan.black_frames = request.plan.flat_frames = 32;
     request.plan.ramp_steps = 0;
-    request.plan.settle_ms = 60.0;
-    request.distance_mm = board_.object.distance_mm;
     const SimulatedBench bench = SimulatedBench::create(board_, plain_display(board_), 1).value();
     const std::int64_t id = run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file_, go_on).value();
     CHECK(estimate_session(file_, file_.sessions().value().front(), {exposure_s(), unit_lsb(), "test", 0, 1}));

@@ -19,6 +19,7 @@
 #include "firmware/files/png.hpp"
 #include "tests/drivers/illuminator/typed_terminal.hpp"
 #include "tests/firmware/lit_eye.hpp"
+#include "tests/firmware/short_session.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/hal/error_check.hpp"
 
@@ -29,16 +30,10 @@ using test::LitEye;
 namespace {
 
 CalibrationRequest small_request() {
-  CalibrationRequest request;
-  request.plan.warm_up_s = 0.1;
-  request.plan.settle_ms = 50.0;
+  CalibrationRequest request = test::short_session(80);
   request.plan.dark_frames = request.plan.black_frames = request.plan.flat_frames = 8;
-  request.plan.ramp_steps = 1;
-  request.plan.ramp_frames = 2;
-  request.plan.patterns = 80;
   request.plan.saturated_channels = 0.0;
-  request.distance_mm = 30.0;
-  request.program = "test";
+  request.configuration.clear();  // the run adds the exposure to it
   return request;
 }
 

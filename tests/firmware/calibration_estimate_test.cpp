@@ -13,6 +13,7 @@
 #include "firmware/calibration/calibration_run.hpp"
 #include "firmware/calibration/session_estimate.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
+#include "tests/firmware/short_session.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/source_folder.hpp"
@@ -130,13 +131,11 @@ TEST_CASE("a session measures rows that no model of ours contains, and knows how
   quiet.detector.inl_lsb = 0.0;
   const std::vector<double> truth = true_rows(quiet);
 
-  CalibrationRequest request;
+  CalibrationRequest request = test::short_session(test::sanitized ? 24 : 128);
   request.plan.warm_up_s = 1.0;
-  request.plan.patterns = test::sanitized ? 24 : 128;
   request.plan.dark_frames = request.plan.black_frames = request.plan.flat_frames = 32;
   request.plan.ramp_steps = 4;
-  request.plan.settle_ms = 60.0;
-  request.distance_mm = board.object.distance_mm;
+  request.plan.ramp_frames = 16;
   const test::TemporaryFolder folder;
   auto file = calib::EyeFile::create((folder.path() / "a.eye").string(), {board.source.serial, board.eye, board.object})
                   .value();

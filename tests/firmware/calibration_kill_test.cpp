@@ -17,35 +17,14 @@
 #include "firmware/calibration/session_estimate.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
 #include "hal/try.hpp"
+#include "tests/firmware/short_session.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/sanitized.hpp"
-#include "tests/source_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
 
 namespace {
-
-/// Without noise, so that a capture is the same whenever it is taken.
-Board quiet_board() {
-  Board board = load_board(test::source_path("boards/sim-8x8")).value();
-  board.sensor.read_noise_lsb = 0.0;
-  return board;
-}
-
-CalibrationRequest request_of(int patterns) {
-  CalibrationRequest request;
-  request.plan.warm_up_s = 0.1;
-  request.plan.dark_frames = request.plan.black_frames = request.plan.flat_frames = 4;
-  request.plan.ramp_steps = 1;
-  request.plan.ramp_frames = 2;
-  request.plan.patterns = patterns;
-  request.plan.settle_ms = 60.0;
-  request.distance_mm = 30.0;
-  request.configuration = "unchanged";
-  request.program = "test";
-  return request;
-}
 
 calib::EyeFile new_file(const std::string& path, const Board& board) {
   return calib::EyeFile::create(path, {board.source.serial, board.eye, board.object}).value();
@@ -95,7 +74,8 @@ struct Killed {
   bool killed = false, ended = false;  ///< neither: it failed
 };
 
-/// Goes on with the session in a process of its own and kills that after some captures and a moment.
+/// Goes on with the session in a process of its own and kills that after some captures and a moment, so that it ends
+/// anywhere: between captures, in a write, in a sync. Nothing that is checked depends on where.
 Killed go_on_and_kill(const Board& board, const CalibrationRequest& request, const std::string& path, int captures,
                       std::chrono::microseconds moment) {
   int ends[2] = {-1, -1};
@@ -129,8 +109,8 @@ calib::ResponseEstimate estimated(calib::EyeFile& file, const Board& board) {
 
 TEST_CASE("a session that is killed a hundred times at random ends with the rows of one that is not, bit for bit") {
   const int kills = test::sanitized ? 5 : 100;
-  const Board board = quiet_board();
-  CalibrationRequest request = request_of(24 + 12 * kills);
+  const Board board = test::quiet_board();
+  CalibrationRequest request = test::short_session(24 + 12 * kills);
   const test::TemporaryFolder folder;
   const std::string cut_path = (folder.path() / "cut.eye").string();
   calib::EyeFile whole = new_file((folder.path() / "whole.eye").string(), board);

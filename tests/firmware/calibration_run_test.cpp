@@ -11,6 +11,7 @@
 #include "firmware/calibration/plan_file.hpp"
 #include "firmware/calibration/plan_settings.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
+#include "tests/firmware/short_session.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/hal/error_check.hpp"
 #include "tests/source_folder.hpp"
@@ -20,29 +21,15 @@ using namespace compueye::firmware;
 
 namespace {
 
-Board quiet_board() {
-  Board board = load_board(test::source_path("boards/sim-8x8")).value();
-  board.sensor.read_noise_lsb = 0.0;  // so that a frame's number does not matter
-  return board;
-}
-
 CalibrationRequest small_request() {
-  CalibrationRequest request;
-  request.plan.warm_up_s = 0.5;
-  request.plan.dark_frames = request.plan.black_frames = request.plan.flat_frames = 2;
-  request.plan.ramp_steps = 1;
-  request.plan.ramp_frames = 2;
-  request.plan.patterns = 12;
+  CalibrationRequest request = test::short_session(12);
   request.plan.reference_every = 4;
-  request.distance_mm = 30.0;
-  request.configuration = "unchanged";
-  request.program = "test";
   return request;
 }
 
 struct Bench {
   test::TemporaryFolder folder;
-  Board board = quiet_board();
+  Board board = test::quiet_board();
   std::string path = (folder.path() / "a.eye").string();
 
   /// A run until so many captures are on the disk, as one that is killed then; its error, if any.
@@ -125,7 +112,7 @@ TEST_CASE("a session goes on with the same eye, configuration and plan alone, an
   refused({}, [](CalibrationRequest& r) { r.plan.patterns = 13; });
   bench.board.source.serial = "SIM-OTHER";
   test::check_error(bench.run(request), hal::ErrorCode::mismatch, bench.path, {"'SIM-8X8'", "'SIM-OTHER'"});
-  bench.board = quiet_board();
+  bench.board = test::quiet_board();
   CHECK(bench.captures().size() == 4);
   CHECK(bench.run(request).has_value());
   test::check_error(bench.run(request), hal::ErrorCode::usage, bench.path, {"--resume"});
@@ -195,7 +182,7 @@ TEST_CASE("the plan that a board comes with is one") {
 }
 
 TEST_CASE("only a grey display that stands still and is as large as the object plane is calibrated with") {
-  const Board board = quiet_board();
+  const Board board = test::quiet_board();
   const auto refused = [&](auto change) {
     sim::Scene scene = plain_display(board);
     change(scene);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "recon/core/operators/linear_operator.hpp"
 #include "tests/hal/error_check.hpp"
 #include "tests/recon/random_problem.hpp"
 
@@ -88,6 +89,19 @@ TEST_CASE("a response may know its picture, which goes with its rows and not int
   CHECK(some.image_cols() == 3);
   CHECK(some.squared_norm() == doctest::Approx(6.0));
   CHECK(a.with_image(0, 0).value().image_rows() == 0);
+}
+
+TEST_CASE("what a response was rounded for goes with its rows, and with multiples that are powers of two") {
+  const auto kind = compueye::recon::OperatorKind::dense_runs_int8;
+  const Response plain = Response::from_dense(3, 2, {1, 2, 3, 4, 0, 5}).value();
+  CHECK_FALSE(plain.rounded_for().has_value());
+  const Response a = Response(plain).said_to_be_rounded_for(kind);
+  CHECK(a.with_image(1, 2).value().rounded_for() == kind);
+  CHECK(a.without_rows(std::vector<int>{1}).rounded_for() == kind);
+  const std::vector<std::int32_t> rows{2, 0};
+  CHECK(a.select_rows(rows).rounded_for() == kind);
+  CHECK(a.select_rows(rows, std::vector<double>{0.25, 4.0}).rounded_for() == kind);
+  CHECK_FALSE(a.select_rows(rows, std::vector<double>{0.25, 3.0}).rounded_for().has_value());
 }
 
 TEST_CASE("without some rows a response keeps its shape, and those rows see nothing") {

@@ -161,7 +161,7 @@ TEST_CASE("rows of a measured eye are held to less than its calibration leaves, 
   const Response rounded = recon::quantised(a, OperatorKind::wavelet_runs);
   CHECK(recon::worst_row_error(a, rounded) < recon::most_row_error);
   CHECK(recon::worst_row_error(a, rounded) > 1e-4);  // or nothing was left out
-  CHECK(recon::quantised(rounded, OperatorKind::wavelet_runs).content_hash() == rounded.content_hash());
+  CHECK(recon::rounded_in_wavelets(rounded).content_hash() == rounded.content_hash());
   const Response seeing = rounded.select_rows(rounded.seeing_rows());
   recon::KeptTables kept, all;
   const auto wavelets = recon::make_operator<float>(seeing, OperatorKind::wavelet_runs, kept).value();
@@ -236,8 +236,10 @@ TEST_CASE("a large measured eye is in wavelet runs by rule, and A A' is that of 
   const auto form = recon::rounded_form(a, std::nullopt);
   REQUIRE(form.has_value());
   CHECK(form->kind == OperatorKind::wavelet_runs);
-  CHECK(recon::is_rounded_in_wavelets(form->response));
-  CHECK_FALSE(recon::is_rounded_in_wavelets(a));
+  CHECK(form->response.rounded_for() == OperatorKind::wavelet_runs);
+  // Not once more, nor in another form unless it is asked for.
+  CHECK(recon::rounded_form(form->response, std::nullopt)->response.values().data() == form->response.values().data());
+  CHECK_FALSE(recon::rounded_form(form->response, OperatorKind::csr).has_value());
   const recon::GramMatrix gram(form->response, recon::MetricKind::identity);
   auto scratch = gram.make_scratch();
   std::vector<double> found(rows), first(static_cast<std::size_t>(side * side), 0.0), expected(rows);

@@ -172,7 +172,7 @@ Result<void> add_board_figures(const Board& board, const recon::Progress& progre
   figures.add("measured", value_of(living.measured.get()));
   if (living.measured) figures.line("measured", measured_sentence);
   const auto form = recon::rounded_form(living.response, board.plan.op);
-  const std::optional<recon::OperatorKind> op = form ? form->kind : board.plan.op;
+  const std::optional<recon::OperatorKind> op = recon::applied_operator(form, board.plan.op);
   const recon::Response& a = form ? form->response : living.response;
   const auto seeing = static_cast<int>(a.seeing_rows().size());
   figures.add("seeing_channels", seeing, "seeing channels", "{:,} of " + grouped(a.rows()));

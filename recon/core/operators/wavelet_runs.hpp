@@ -11,8 +11,8 @@ namespace compueye::recon::core {
 /// A = C S' for rows that are smooth pictures, as a soft-edged receptive field times a slowly changing sensitivity is:
 /// S' measures the picture's coefficients in a wavelet basis once for all rows, C holds those tiles of each row's
 /// coefficients that are not negligible (Beylkin, Coifman & Rokhlin 1991, "Fast wavelet transforms and numerical
-/// algorithms I"). Four rows, any that have many of them in common, make a
-/// block and share their tiles; what one of them does not have is nought there.
+/// algorithms I"). Four rows, any that have many of them in common, make a block and share their tiles; what one of
+/// them does not have is nought there.
 ///
 /// Averages carry nearly all of a row and are held as bfloat16: words[32 t + 16 h + k] is row 2h in its lower half and
 /// row 2h+1 in its upper, at coefficient k of the t-th tile of the list. Details are whole numbers times a scale of

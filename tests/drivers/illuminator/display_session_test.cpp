@@ -12,6 +12,7 @@
 #include "firmware/calibration/calibration_run.hpp"
 #include "tests/drivers/illuminator/virtual_screen.hpp"
 #include "tests/firmware/lit_eye.hpp"
+#include "tests/firmware/short_session.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 
 using namespace compueye;
@@ -39,13 +40,8 @@ TEST_CASE("every capture of a session before a display is of its own pattern and
   REQUIRE(told.size() == 1);
   CHECK(told[0].find("200 x 200") != std::string::npos);
 
-  CalibrationRequest request;
+  CalibrationRequest request = test::short_session(24);
   request.plan.warm_up_s = 0.0;
-  request.plan.settle_ms = 60.0;
-  request.plan.dark_frames = request.plan.black_frames = request.plan.flat_frames = 2;
-  request.plan.ramp_steps = 1;
-  request.plan.patterns = 24;
-  request.distance_mm = 30.0;
   const test::TemporaryFolder folder;
   auto file = calib::EyeFile::create((folder.path() / "a.eye").string(), {"CE-LIT", eye.board.eye, eye.board.object});
   REQUIRE(file.has_value());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/eye_file/eye_file.hpp"
+#include "firmware/app/commands/calibrate_report.hpp"
 #include "firmware/calibration/calibration_run.hpp"
 #include "firmware/calibration/plan_file.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
@@ -92,6 +93,18 @@ TEST_CASE("what a session measured is estimated by --resume where a stop came be
   const Ended again = test::compueye({"calibrate", "--board", path, "--eye", eye, "--resume"});
   CHECK(again.exit_code == 2);
   CHECK(contains(again.err, "--resume"));
+}
+
+TEST_CASE("an estimate that no picture should be trusted to is said to be one") {
+  firmware::SessionEstimate made;
+  made.rows.rows.resize(4);
+  for (calib::RowEstimate& row : made.rows.rows) row.held_out_chi2 = 20.0;
+  CHECK(firmware::doubt_of(made).empty());
+  for (calib::RowEstimate& row : made.rows.rows) row.held_out_chi2 = 500.0;
+  CHECK(contains(firmware::doubt_of(made), "chi^2 500"));
+  for (calib::RowEstimate& row : made.rows.rows) row.held_out_chi2 = 20.0;
+  for (std::size_t m = 1; m < 4; ++m) made.rows.rows[m].status = hal::ChannelStatus::does_not_fit;
+  CHECK(contains(firmware::doubt_of(made), "1 of 4"));
 }
 
 TEST_CASE("a session of an eye that is not there, and before a light that it cannot see, leaves no file") {
