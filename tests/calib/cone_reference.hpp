@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hal/eye_geometry.hpp"
+#include "tests/hal/units.hpp"
 
 /// The cone itself, as the independent check of calib/cone_section and calib/pixel_coverage: a point of the plane is
 /// seen when the angle between its ray and the axis is at most the half angle. No conic, no chord formula, nothing
@@ -164,7 +165,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-inline constexpr double deg = std::numbers::pi / 180.0;
+using compueye::test::deg;
 
 /// A cone that leans `tilt_rad` towards azimuth `lean_rad`, its apex `height` in front of the plane.
 inline Cone leaning_cone(double tilt_rad, double lean_rad, double half_angle_rad, double height) {

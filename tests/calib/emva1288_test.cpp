@@ -20,13 +20,13 @@ using calib::SensorNoise;
 namespace {
 
 /// The simulated detector before an even lamp: the steps of its effects, then rounding and clipping.
-struct Bench {
+struct SensorBench {
   test::EffectRig rig{32, 32, 0.0};
   double lamp_noise = 0.0;  ///< relative, a draw a frame, the same for all channels
   int frames = test::sanitized ? 20 : 150;
   std::vector<LightSeries> series = {};
 
-  explicit Bench(double electrons_per_lsb) {
+  explicit SensorBench(double electrons_per_lsb) {
     rig.board.sensor.bits = 12;
     rig.board.sensor.dark_level_lsb = 100.0;
     rig.board.detector.electrons_per_lsb = electrons_per_lsb;
@@ -76,7 +76,7 @@ constexpr double slack = test::sanitized ? 4.0 : 1.0;  // of tolerances, for few
 }  // namespace
 
 TEST_CASE("the simulated detector gives back what it was told, by EMVA 1288") {
-  Bench bench(20.0);
+  SensorBench bench(20.0);
   bench.rig.board.sensor.read_noise_lsb = 2.0;
   bench.rig.board.detector.full_well_e = 50000.0;
   bench.rig.board.detector.dark_current_e_per_s = 40000.0;
@@ -103,7 +103,7 @@ TEST_CASE("the simulated detector gives back what it was told, by EMVA 1288") {
 }
 
 TEST_CASE("a lamp's noise that would double K is taken off what is the channels' own") {
-  Bench bench(500.0);
+  SensorBench bench(500.0);
   bench.rig.board.sensor.read_noise_lsb = 0.5;
   bench.rig.board.detector.full_well_e = 0.0;
   bench.lamp_noise = 0.001;
@@ -128,7 +128,7 @@ TEST_CASE("a lamp's noise that would double K is taken off what is the channels'
 }
 
 TEST_CASE("a channel that blinks hides no other's noise, and few frames tell all channels' K though none's own") {
-  Bench bench(20.0);
+  SensorBench bench(20.0);
   bench.rig.board.sensor.read_noise_lsb = 1.0;
   bench.frames = 12;
   bench.take(0.0, 0.01);
@@ -150,7 +150,7 @@ TEST_CASE("a channel that blinks hides no other's noise, and few frames tell all
 }
 
 TEST_CASE("four channels keep three quarters of their noise, and get it back") {
-  Bench bench(20.0);
+  SensorBench bench(20.0);
   bench.rig.board.sensor.read_noise_lsb = 1.0;
   (void)bench.measured(3900.0, 12);
   double sum = 0.0;
@@ -172,7 +172,7 @@ TEST_CASE("four channels keep three quarters of their noise, and get it back") {
 }
 
 TEST_CASE("a converter's bow is the linearity error that the noise-free curve has") {
-  Bench bench(20.0);
+  SensorBench bench(20.0);
   bench.rig.board.detector.inl_lsb = 40.0;
   const SensorNoise noise = bench.measured(3900.0, 16);
   // 5 .. 95 % of full scale less the dark level: the line of least relative distances through the exact curve, found by
@@ -204,7 +204,7 @@ TEST_CASE("a converter's bow is the linearity error that the noise-free curve ha
 }
 
 TEST_CASE("what cannot be told is not told") {
-  Bench bench(0.0);  // light without quanta
+  SensorBench bench(0.0);  // light without quanta
   bench.rig.board.sensor.read_noise_lsb = 2.0;
   const SensorNoise noise = bench.measured(3900.0, 12);
   CHECK_FALSE(noise.median.gain_lsb_per_e.has_value());
@@ -215,7 +215,7 @@ TEST_CASE("what cannot be told is not told") {
   CHECK_FALSE(noise.prnu.has_value());
   CHECK(noise.median.linearity_error.has_value());
 
-  Bench dim(20.0);  // never near saturation, one dark exposure
+  SensorBench dim(20.0);  // never near saturation, one dark exposure
   dim.rig.board.frame_rate_hz = 5.0;
   dim.take(0.0, 0.01);
   for (const double level : {100.0, 200.0, 300.0, 400.0}) dim.take(level, 0.01);
@@ -230,7 +230,7 @@ TEST_CASE("what cannot be told is not told") {
 }
 
 TEST_CASE("a stuck channel tells nothing and spoils nothing") {
-  Bench bench(20.0);
+  SensorBench bench(20.0);
   bench.rig.board.detector.stuck = {3, 700};
   bench.rig.board.sensor.read_noise_lsb = 1.0;
   const SensorNoise noise = bench.measured(3900.0, 12);

@@ -28,7 +28,7 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-hal::EyeGeometry small_eye() {
+hal::EyeGeometry checked_eye() {
   hal::EyeGeometry eye;
   eye.interommatidial_rad = 2.0 * degree;
   eye.acceptance_rad = 8.0 * degree;
@@ -63,15 +63,15 @@ std::vector<double> signals_turned(const hal::EyeGeometry& eye, const hal::Objec
 }
 
 /// An eye, the four pictures of a check, and what it gives of them.
-struct Bench {
-  hal::EyeGeometry eye = small_eye();
+struct CheckBench {
+  hal::EyeGeometry eye = checked_eye();
   hal::ObjectPlane plane;
   recon::Response rows = nominal_response(eye, plane).value();
   std::vector<hal::Image> pictures;
   CheckSamples samples;
   static constexpr double noise = 0.02;  ///< of a frame, in white pixels; white gives about 12
 
-  Bench() {
+  CheckBench() {
     std::vector<hal::Image> patterns;
     const PatternFamily& blobs = *pattern_family("blobs").value();
     for (int p = 0; p < 24; ++p) patterns.push_back(blobs.draw(plane.rows, plane.cols, 1, p).value());
@@ -116,7 +116,7 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("the slopes of a turn are those of an eye that is turned, apexes and all") {
-  const Bench bench;
+  const CheckBench bench;
   for (std::size_t axis = 0; axis < turn_axes; ++axis) {
     constexpr double by = 0.02 * degree;
     const std::vector<double> more = bench.all_turned(axis, by), less = bench.all_turned(axis, -by);
@@ -133,7 +133,7 @@ TEST_CASE("the slopes of a turn are those of an eye that is turned, apexes and a
 }
 
 TEST_CASE("an eye that nothing happened to raises no more false alarms than one in a thousand") {
-  const Bench bench;
+  const CheckBench bench;
   std::mt19937_64 random(7);
   const int checks = test::sanitized ? 200 : 20000;
   int alarms = 0;
@@ -143,7 +143,7 @@ TEST_CASE("an eye that nothing happened to raises no more false alarms than one 
 }
 
 TEST_CASE("four frames tell a gain, a turn and one ommatidium, each as what it is") {
-  const Bench bench;
+  const CheckBench bench;
   std::mt19937_64 random(11);
   constexpr int draws = 100;
   int gains = 0, turns = 0, singles = 0;
@@ -168,7 +168,7 @@ TEST_CASE("four frames tell a gain, a turn and one ommatidium, each as what it i
 }
 
 TEST_CASE("a restless light hides a small gain, and is no alarm; dark, masked and missing samples tell nothing") {
-  Bench bench;
+  CheckBench bench;
   std::mt19937_64 random(13);
   bench.samples.light_spread = 0.01;
   std::vector<double> dimmed = bench.samples.then;
@@ -191,7 +191,7 @@ TEST_CASE("a restless light hides a small gain, and is no alarm; dark, masked an
 }
 
 TEST_CASE("dark levels that went, all or one, are told as what they are") {
-  Bench bench;
+  CheckBench bench;
   std::mt19937_64 random(19);
   bench.samples.dark_now.assign(64, 0.5 + 0.6);
   const EyeChange all = bench.judged(bench.samples.then, random);
@@ -211,7 +211,7 @@ TEST_CASE("dark levels that went, all or one, are told as what they are") {
 }
 
 TEST_CASE("several things at once are told apart") {
-  const Bench bench;
+  const CheckBench bench;
   std::mt19937_64 random(17);
   std::vector<double> y = bench.all_turned(1, -0.1 * degree);
   for (std::size_t at = 0; at < y.size(); ++at) y[at] *= at % 64 == 9 ? 0.5 : at % 64 == 40 ? 1.1 * 1.01 : 1.01;
@@ -226,7 +226,7 @@ TEST_CASE("several things at once are told apart") {
 }
 
 TEST_CASE("samples that do not belong together are refused") {
-  Bench bench;
+  CheckBench bench;
   bench.samples.dark_now = bench.samples.dark_then;
   bench.samples.now = bench.samples.then;
   bench.samples.now.pop_back();

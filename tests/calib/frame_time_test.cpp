@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "tests/hal/units.hpp"
+
 using namespace compueye;
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000, second = 1'000'000'000;
+using compueye::test::ms;
+using compueye::test::second;
 
 struct Span {
   std::int64_t least_ns = second, most_ns = -second;

@@ -20,7 +20,7 @@ using hal::ErrorCode;
 
 namespace {
 
-struct Size {
+struct PictureSize {
   int rows, cols;
 };
 
@@ -91,7 +91,7 @@ TEST_CASE("patterns: each family is named once, says what it is and draws 0..1 a
     CAPTURE(each.name);
     CHECK(names.insert(each.name).second);
     CHECK_FALSE(each.description.empty());
-    for (const Size& size : {Size{1, 1}, {1, 5}, {6, 1}, {2, 3}, {16, 16}, {9, 40}}) {
+    for (const PictureSize& size : {PictureSize{1, 1}, {1, 5}, {6, 1}, {2, 3}, {16, 16}, {9, 40}}) {
       const int rows = size.rows, cols = size.cols;
       const std::int64_t count = each.count(rows, cols);
       CAPTURE(rows);
@@ -122,7 +122,7 @@ TEST_CASE("patterns: the same family, seed and index are the same bits, on every
                                {"black", 0x17978DEBE3A14A95U}}) {
     CAPTURE(golden.name);
     std::uint64_t hash = 0xCBF29CE484222325U;
-    for (const Size& size : {Size{16, 16}, {24, 40}, {5, 7}}) {
+    for (const PictureSize& size : {PictureSize{16, 16}, {24, 40}, {5, 7}}) {
       const int rows = size.rows, cols = size.cols;
       const std::int64_t count = std::min<std::int64_t>(family(golden.name).count(rows, cols), 40);
       for (std::int64_t index = 0; index < count; ++index)
@@ -227,7 +227,7 @@ TEST_CASE("patterns: cosines are those of the library, and of the mean that they
 }
 
 TEST_CASE("patterns: a scan leaves out no pixel and shows no empty picture") {
-  for (const Size& size : {Size{1, 1}, {16, 16}, {17, 40}, {64, 33}, {3, 50}}) {
+  for (const PictureSize& size : {PictureSize{1, 1}, {16, 16}, {17, 40}, {64, 33}, {3, 50}}) {
     const int rows = size.rows, cols = size.cols;
     CAPTURE(rows);
     CAPTURE(cols);

@@ -18,12 +18,12 @@ using reference::Pixel;
 
 namespace {
 
-ConeSection section(const Cone& c) {
+ConeSection section_of(const Cone& c) {
   return {c.apex, c.axis, c.half_angle_rad, c.plane_z};
 }
 
 double covered(const Cone& c, const Pixel& p) {
-  const ConeSection s = section(c);
+  const ConeSection s = section_of(c);
   return coverage(s, {p.x0 - s.vertex_x_mm(), p.x1 - s.vertex_x_mm(), p.y0 - s.vertex_y_mm(), p.y1 - s.vertex_y_mm()});
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("coverage is exact at the parabola and along asymptotes") {
     CAPTURE(c.cone.axis.x);
     CAPTURE(c.cone.axis.y);
     CHECK(std::abs(covered(c.cone, c.pixel) - truth) <= 1e-10 * truth);
-    if (section(c.cone).kind() == SectionKind::parabola) ++parabolas;
+    if (section_of(c.cone).kind() == SectionKind::parabola) ++parabolas;
   }
   CHECK(parabolas == 60);
 }
@@ -133,7 +133,7 @@ TEST_CASE("coverage agrees with dense sampling of the cone itself") {
     CHECK(exact >= 0.0);
     CHECK(exact <= 1.0);
     CHECK(std::abs(exact - reference::sampled_coverage(c.cone, c.pixel, n)) <= 2.0 / n);
-    ++kinds[static_cast<std::size_t>(section(c.cone).kind())];
+    ++kinds[static_cast<std::size_t>(section_of(c.cone).kind())];
   }
   CHECK(kinds[static_cast<std::size_t>(SectionKind::ellipse)] >= 50);
   CHECK(kinds[static_cast<std::size_t>(SectionKind::hyperbola)] >= 50);

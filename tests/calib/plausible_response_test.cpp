@@ -23,7 +23,7 @@ namespace {
 
 constexpr BuildErrors no_errors{0.0, 0.0, 0.0, 4.0, 0.0};
 
-EyeGeometry square_eye(int n, double interommatidial_deg, double acceptance_deg) {
+EyeGeometry fisheye_of(int n, double interommatidial_deg, double acceptance_deg) {
   EyeGeometry eye;
   eye.rows = eye.columns = n;
   eye.interommatidial_rad = interommatidial_deg * deg;
@@ -32,7 +32,7 @@ EyeGeometry square_eye(int n, double interommatidial_deg, double acceptance_deg)
 }
 
 // Every field lies wholly on the plane, some 50 pixels across.
-const EyeGeometry roomy_eye = square_eye(12, 1.0, 12.0);
+const EyeGeometry roomy_eye = fisheye_of(12, 1.0, 12.0);
 constexpr ObjectPlane roomy_plane{120, 120, 18.0, 18.0, 30.0};
 
 recon::Response made(const EyeGeometry& eye, const ObjectPlane& plane, const BuildErrors& errors, std::uint64_t seed) {
@@ -182,7 +182,7 @@ TEST_CASE("a soft edge keeps the light and widens the field") {
 }
 
 TEST_CASE("no mirror symmetry is left") {
-  const EyeGeometry eye = square_eye(8, 1.5, 8.0);
+  const EyeGeometry eye = fisheye_of(8, 1.5, 8.0);
   const ObjectPlane plane{16, 16, 8.0, 8.0, 30.0};
   const auto mirrored_distance = [&](const recon::Response& a) {
     std::vector<double> at(64 * 256, 0.0);
@@ -221,7 +221,7 @@ TEST_CASE("one effect does not change what another draws") {
 }
 
 TEST_CASE("blind rows stay blind, and nothing is negative or tiny") {
-  const EyeGeometry eye = square_eye(20, 9.0, 40.0);
+  const EyeGeometry eye = fisheye_of(20, 9.0, 40.0);
   const ObjectPlane plane{40, 40, 60.0, 60.0, 10.0};
   const auto nominal = nominal_response(eye, plane);
   REQUIRE(nominal.has_value());

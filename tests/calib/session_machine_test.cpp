@@ -11,6 +11,7 @@
 #include "calib/patterns/pattern_family.hpp"
 #include "calib/session/session_machine.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 using calib::Need;
@@ -18,12 +19,12 @@ using calib::Stage;
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
+using compueye::test::ms;
 constexpr int side = 8, channels = 16;
 
 /// An eye of 16 channels, each seeing four rows of pixels beside each other, behind a light that takes its time, on a
 /// clock of its own.
-struct Bench {
+struct TimedBench {
   calib::SessionPlan plan;
   std::int64_t now_ns = 5 * ms, period_ns = 2 * ms, light_delay_ns = 30 * ms, way_ns = 3 * ms;
   double gain = 100.0, dark = 40.0, display_black = 0.01;
@@ -38,7 +39,7 @@ struct Bench {
   std::int64_t hold_up_from = -1;  // capture from which on the reader is held up at every change of light; -1: never
   std::vector<std::pair<hal::SampleBlock, std::vector<std::int32_t>>> held_up;
 
-  Bench() {
+  TimedBench() {
     plan.warm_up_s = 0.1;
     plan.dark_frames = plan.black_frames = plan.flat_frames = 4;
     plan.ramp_steps = 2;
@@ -133,7 +134,7 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("a session captures its whole schedule, each under its own light alone") {
-  Bench bench;
+  TimedBench bench;
   auto machine = bench.machine();
   REQUIRE(bench.drive(machine).has_value());
   const auto schedule = calib::capture_schedule(bench.plan, side, side);
@@ -187,12 +188,12 @@ TEST_CASE("references, darks and held-out patterns come as often as the plan say
 }
 
 TEST_CASE("a session that was cut off goes on after the last capture that was stored") {
-  Bench whole;
+  TimedBench whole;
   auto machine = whole.machine();
   REQUIRE(whole.drive(machine).has_value());
   for (const std::int64_t cut : {1, 12, 17, 30}) {
     CAPTURE(cut);
-    Bench bench;
+    TimedBench bench;
     auto first = bench.machine();
     REQUIRE(bench.drive(first, cut).has_value());
     calib::Resumed resumed{cut, {}};
@@ -211,7 +212,7 @@ TEST_CASE("a session that was cut off goes on after the last capture that was st
 }
 
 TEST_CASE("a session does not go on before another light than it was begun with") {
-  Bench bench;
+  TimedBench bench;
   auto first = bench.machine();
   REQUIRE(bench.drive(first, 30).has_value());
   calib::Resumed resumed{30, {}};
@@ -236,18 +237,18 @@ TEST_CASE("a session does not go on before another light than it was begun with"
 TEST_CASE("what is lost, overrun, saturated or of other settings is taken again, and counted") {
   struct Case {
     calib::Rejection reason;
-    std::function<void(hal::SampleBlock&, Bench&)> spoil;
+    std::function<void(hal::SampleBlock&, TimedBench&)> spoil;
   };
   const std::vector<Case> cases{
-      {calib::Rejection::gap, [](hal::SampleBlock& b, Bench& bench) { b.frame = bench.frame++; }},
-      {calib::Rejection::overrun, [](hal::SampleBlock& b, Bench&) { b.flags.overrun = true; }},
-      {calib::Rejection::configuration, [](hal::SampleBlock& b, Bench&) { b.config_id = 7; }},
+      {calib::Rejection::gap, [](hal::SampleBlock& b, TimedBench& bench) { b.frame = bench.frame++; }},
+      {calib::Rejection::overrun, [](hal::SampleBlock& b, TimedBench&) { b.flags.overrun = true; }},
+      {calib::Rejection::configuration, [](hal::SampleBlock& b, TimedBench&) { b.config_id = 7; }},
       {calib::Rejection::saturated,
-       [](hal::SampleBlock&, Bench& bench) { std::fill(bench.codes.begin(), bench.codes.end(), 4095); }},
+       [](hal::SampleBlock&, TimedBench& bench) { std::fill(bench.codes.begin(), bench.codes.end(), 4095); }},
   };
   for (const Case& each : cases) {
     CAPTURE(name(each.reason));
-    Bench bench, undisturbed;
+    TimedBench bench, undisturbed;
     bench.plan.frames = undisturbed.plan.frames = 3;
     auto whole = undisturbed.machine();
     REQUIRE(undisturbed.drive(whole).has_value());
@@ -270,14 +271,14 @@ TEST_CASE("what is lost, overrun, saturated or of other settings is taken again,
 }
 
 TEST_CASE("an eye that was lost and found sees its light anew, and what was being taken is taken again") {
-  Bench whole;
+  TimedBench whole;
   whole.plan.frames = 3;
   auto undisturbed = whole.machine();
   REQUIRE(whole.drive(undisturbed).has_value());
   // Frames at which it is lost: in the warm-up, while light falls and rises, at the levels, and in captures.
   for (const std::uint64_t lost_at : {10U, 60U, 70U, 130U, 250U, 900U, 2000U}) {
     CAPTURE(lost_at);
-    Bench bench;
+    TimedBench bench;
     bench.plan.frames = 3;
     auto machine = bench.machine();
     while (machine.need() != Need::nothing) {
@@ -301,7 +302,7 @@ TEST_CASE("an eye that was lost and found sees its light anew, and what was bein
 }
 
 TEST_CASE("frames of the light before are told by when they were exposed, however late they are read") {
-  Bench whole, late;
+  TimedBench whole, late;
   late.hold_up_from = 8;
   auto undisturbed = whole.machine(), machine = late.machine();
   REQUIRE(whole.drive(undisturbed).has_value());
@@ -311,7 +312,7 @@ TEST_CASE("frames of the light before are told by when they were exposed, howeve
 }
 
 TEST_CASE("a channel that means nothing in one frame of a capture means nothing in the capture") {
-  Bench bench;
+  TimedBench bench;
   bench.plan.frames = 3;
   auto machine = bench.machine();
   int frames = 0;
@@ -332,7 +333,7 @@ TEST_CASE("a channel that means nothing in one frame of a capture means nothing 
 }
 
 TEST_CASE("a session gives up on what never comes whole, and says why") {
-  Bench bench;
+  TimedBench bench;
   bench.plan.most_retakes = 3;
   auto machine = bench.machine();
   bench.spoil = [&](hal::SampleBlock& block) { block.config_id = machine.progress(0).taken >= 5 ? 9 : 0; };
@@ -342,26 +343,26 @@ TEST_CASE("a session gives up on what never comes whole, and says why") {
 
 TEST_CASE("too much light, too little and light that does not settle are refused before anything is stored") {
   const auto refused = [](const test::Named& named, auto change) {
-    Bench bench;
+    TimedBench bench;
     change(bench);
     auto machine = bench.machine();
     test::check_error(bench.drive(machine), hal::ErrorCode::out_of_range, "light", named);
     CHECK(bench.stored.empty());
   };
-  refused({"16"}, [](Bench& b) { b.gain = 2000.0; });
-  refused({"12", "50"}, [](Bench& b) { b.gain = 3.0; });
-  refused({"100"}, [](Bench& b) { b.light_delay_ns = 90 * ms; });
+  refused({"16"}, [](TimedBench& b) { b.gain = 2000.0; });
+  refused({"12", "50"}, [](TimedBench& b) { b.gain = 3.0; });
+  refused({"100"}, [](TimedBench& b) { b.light_delay_ns = 90 * ms; });
 }
 
 TEST_CASE("a device that begins anew is believed about its time no more than before") {
-  Bench bench;
+  TimedBench bench;
   auto machine = bench.machine();
   std::int64_t back_ns = 0;
   bench.spoil = [&](hal::SampleBlock& block) {
     if (machine.progress(0).taken == 20) back_ns = 900 * ms;
     block.t_ns -= back_ns;
   };
-  Bench whole;
+  TimedBench whole;
   auto undisturbed = whole.machine();
   REQUIRE(whole.drive(undisturbed).has_value());
   REQUIRE(bench.drive(machine).has_value());
@@ -372,7 +373,7 @@ TEST_CASE("a device that begins anew is believed about its time no more than bef
 TEST_CASE("a device whose time falls behind is told so when frames cannot be told apart any more, and not before") {
   for (const std::int64_t percent : {90, 1}) {
     CAPTURE(percent);
-    Bench bench;
+    TimedBench bench;
     auto machine = bench.machine();
     bench.spoil = [&](hal::SampleBlock& block) { block.t_ns -= (bench.now_ns - bench.period_ns) / 100 * percent; };
     const auto done = bench.drive(machine);

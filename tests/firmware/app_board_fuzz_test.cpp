@@ -15,7 +15,7 @@ using namespace compueye::firmware;
 namespace {
 
 void check_sane(const std::string& text) {
-  const std::string broken = test::broken_promise(text);
+  const std::string broken = firmware::test::broken_promise(text);
   CHECK(broken == "");
 }
 
@@ -53,7 +53,7 @@ TEST_CASE("any mutation of a board gives a board or an error") {
   constexpr int rounds = 3000;
   int good = 0;
   for (int round = 0; round < rounds; ++round) {
-    std::string text = test::good_board;
+    std::string text = firmware::test::good_board;
     const std::size_t mutations = 1 + below(random, 6);
     for (std::size_t m = 0; m < mutations && !text.empty(); ++m) mutate(text, random);
     CAPTURE(round);
@@ -66,8 +66,8 @@ TEST_CASE("any mutation of a board gives a board or an error") {
 }
 
 TEST_CASE("a board cut off anywhere gives a board or an error") {
-  for (std::size_t length = 0; length <= test::good_board.size(); ++length) {
+  for (std::size_t length = 0; length <= firmware::test::good_board.size(); ++length) {
     CAPTURE(length);
-    check_sane(test::good_board.substr(0, length));
+    check_sane(firmware::test::good_board.substr(0, length));
   }
 }

@@ -10,7 +10,8 @@ using namespace compueye::firmware;
 namespace {
 
 Board board_with(std::string_view old = "rows = 8\n", std::string_view with = "rows = 8\n") {
-  auto board = parse_board(test::replaced(test::good_board, old, with), "board.toml");
+  auto board =
+      parse_board(compueye::firmware::test::replaced(compueye::firmware::test::good_board, old, with), "board.toml");
   REQUIRE_MESSAGE(board.has_value(), board.error().text());
   return *board;
 }
@@ -21,7 +22,7 @@ std::string hash_in(const std::string& lines) {
   return lines.substr(at + 13, 16);
 }
 
-std::string keys_of(const std::vector<BoardDifference>& differences) {
+std::string differing_keys(const std::vector<BoardDifference>& differences) {
   std::string keys;
   for (const BoardDifference& each : differences) keys += each.key + ":" + each.then + ">" + each.now + " ";
   return keys;
@@ -43,7 +44,7 @@ TEST_CASE("a board's lines differ from another's in the settings that do, and th
         Case{"dead = [7, 3]", "dead = []", "sensor.dead:[3, 7]>[] "}}) {
     CAPTURE(c.with);
     const Board other = board_with(c.old, c.with);
-    CHECK(keys_of(board_differences(lines, other)) == c.differs);
+    CHECK(differing_keys(board_differences(lines, other)) == c.differs);
     CHECK(hash_in(board_lines(other)) != hash_in(lines));
   }
   // What says nothing of a sample is no difference.
@@ -63,7 +64,7 @@ TEST_CASE("long lists differ beyond what is quoted of them") {
 TEST_CASE("an older recording knows the board's name and distance, one of strangers nothing") {
   const Board board = board_with();
   CHECK(board_differences("board = test-eye\ndistance_mm = 30\nscene = dots\n", board).empty());
-  CHECK(keys_of(board_differences("board = dome\ndistance_mm = 10\n", board)) ==
+  CHECK(differing_keys(board_differences("board = dome\ndistance_mm = 10\n", board)) ==
         "board:dome>test-eye distance_mm:10>30 ");
   CHECK(board_differences("", board).empty());
   CHECK(board_differences("no line of ours", board).empty());

@@ -16,6 +16,7 @@
 #include "recon/solver_list.hpp"
 #include "tests/firmware/app_board_text.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/units.hpp"
 #include "tests/source_folder.hpp"
 
 using namespace compueye;
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double deg = std::numbers::pi / 180.0;
+using compueye::test::deg;
 const fs::path boards = compueye::test::source_path("boards");
 
 std::string text_of(const fs::path& file) {

@@ -7,13 +7,14 @@
 
 #include "firmware/app/progress_reporter.hpp"
 #include "hal/clock.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
 
 namespace {
 
-constexpr std::int64_t second = 1'000'000'000;
+using compueye::test::second;
 
 struct Screen {
   std::string text;

@@ -16,6 +16,7 @@
 #include "tests/firmware/app_scene_text.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/units.hpp"
 #include "tests/source_folder.hpp"
 
 using namespace compueye;
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double deg = 0.017453292519943295;
+using compueye::test::deg;
 
 sim::Scene good(const std::string& text, const SceneSite& site = some_site()) {
   auto scene = parse_scene(text, "scene.toml", site);

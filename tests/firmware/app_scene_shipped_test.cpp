@@ -31,7 +31,7 @@ std::vector<fs::path> shipped_scenes() {
   return files;
 }
 
-std::string text_of(const fs::path& file) {
+std::string content_of(const fs::path& file) {
   std::ifstream stream(file);
   std::ostringstream text;
   text << stream.rdbuf();
@@ -66,10 +66,10 @@ TEST_CASE("every scene that comes with the project can be seen by every board") 
 }
 
 TEST_CASE("every scene says in a line what it calls for, and the list of them knows it") {
-  const std::string list = text_of(compueye::test::source_path("scenes/README.md"));
+  const std::string list = content_of(compueye::test::source_path("scenes/README.md"));
   for (const fs::path& file : shipped_scenes()) {
     CAPTURE(file.string());
-    const std::string text = text_of(file);
+    const std::string text = content_of(file);
     CHECK((text.starts_with("# Calls for ") || text.starts_with("# Forces ")));
     CHECK(text.find("description = ") != std::string::npos);
     CHECK(list.find("| `" + file.filename().string() + "` |") != std::string::npos);

@@ -33,7 +33,7 @@ int columns_moved(const hal::Image& truth) {
 }  // namespace
 
 TEST_CASE("the truth of a frame is that of the middle of its exposure, in the scene's own time") {
-  Board board = load_board(test::source_path("boards/sim-8x8")).value();
+  Board board = load_board(compueye::test::source_path("boards/sim-8x8")).value();
   board.source.frame_rate_hz = 50.0;
   const sim::Scene scene = moving_sheet(board.object);
   struct Case {
@@ -54,7 +54,7 @@ TEST_CASE("the truth of a frame is that of the middle of its exposure, in the sc
 }
 
 TEST_CASE("a simulation is told all of the board that it asks for") {
-  const Board board = load_board(test::source_path("boards/sim-8x8-detector")).value();
+  const Board board = load_board(compueye::test::source_path("boards/sim-8x8-detector")).value();
   const sim::EyeToSimulate eye = eye_to_simulate(board);
   CHECK(eye.eye.acceptance_rad == board.eye.acceptance_rad);
   CHECK(eye.object.pixels() == board.object.pixels());

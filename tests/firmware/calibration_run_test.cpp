@@ -21,7 +21,7 @@ using namespace compueye::firmware;
 
 namespace {
 
-CalibrationRequest small_request() {
+CalibrationRequest few_patterns() {
   CalibrationRequest request = test::short_session(12);
   request.plan.reference_every = 4;
   return request;
@@ -56,7 +56,7 @@ struct Bench {
 
 TEST_CASE("a session's captures are in the file, in the order of its schedule") {
   Bench bench;
-  const CalibrationRequest request = small_request();
+  const CalibrationRequest request = few_patterns();
   CHECK(bench.run(request).value() == 1);
   const auto taken = bench.captures();
   const auto schedule = calib::capture_schedule(request.plan, 16, 16);
@@ -75,7 +75,7 @@ TEST_CASE("a session's captures are in the file, in the order of its schedule") 
 
 TEST_CASE("a session that is stopped again and again ends with the same captures as one that is not") {
   Bench whole, cut;
-  CalibrationRequest request = small_request();
+  CalibrationRequest request = few_patterns();
   REQUIRE(whole.run(request).has_value());
   std::int64_t stops = 0;
   for (std::int64_t until = 1;; until += 3) {
@@ -98,7 +98,7 @@ TEST_CASE("a session that is stopped again and again ends with the same captures
 
 TEST_CASE("a session goes on with the same eye, configuration and plan alone, and only where it is told to") {
   Bench bench;
-  CalibrationRequest request = small_request();
+  CalibrationRequest request = few_patterns();
   test::check_error(bench.run(request, 4), hal::ErrorCode::interrupted, "calibrate", {});
   test::check_error(bench.run(request), hal::ErrorCode::usage, bench.path, {"--resume"});
   request.resume = true;
@@ -120,7 +120,7 @@ TEST_CASE("a session goes on with the same eye, configuration and plan alone, an
 
 TEST_CASE("a session that is refused its light leaves none, and one that was cut off can be given up") {
   Bench bench;
-  CalibrationRequest request = small_request();
+  CalibrationRequest request = few_patterns();
   CalibrationRequest dim = request;
   dim.plan.least_signal_lsb = 1e6;
   test::check_error(bench.run(dim), hal::ErrorCode::out_of_range, "light", {"1000000"});

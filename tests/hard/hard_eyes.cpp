@@ -1,4 +1,5 @@
 #include "tests/hard/hard_eyes.hpp"
+#include "tests/hal/units.hpp"
 
 #include <numbers>
 #include <utility>
@@ -15,7 +16,7 @@ namespace {
 using hal::Lattice;
 using recon::Response;
 
-constexpr double deg = std::numbers::pi / 180.0;
+using compueye::test::deg;
 
 hal::EyeGeometry geometry(double acceptance_deg, double between_deg = 2.5, Lattice lattice = Lattice::fisheye) {
   hal::EyeGeometry eye;

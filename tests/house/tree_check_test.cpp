@@ -13,14 +13,14 @@ using namespace compueye::house;
 
 namespace {
 
-const std::filesystem::path root = compueye::test::source_path();
+const std::filesystem::path tree_root = compueye::test::source_path();
 
 const std::vector<SourceFile>& product() {
   static const std::vector<SourceFile> files = [] {
     std::vector<SourceFile> all;
-    for (const std::string& file : project_files(root)) {
+    for (const std::string& file : project_files(tree_root)) {
       if (!is_cpp(file) || file.starts_with("tests/") || file.starts_with("bench/")) continue;
-      all.push_back(read_source(file, read_text(root / file)));
+      all.push_back(read_source(file, read_text(tree_root / file)));
     }
     return all;
   }();

@@ -15,13 +15,13 @@ using namespace compueye::tests;
 
 namespace {
 
-constexpr int rows = 24, side = 8, pixels = side * side;
+constexpr int rows = 24, black_side = 8, pixels = black_side * black_side;
 
 recon::Response eye() {
   Random random(5);
   return recon::Response::from_dense(rows, pixels, random_vector(random, rows * pixels, 0.0, 1.0))
       .value()
-      .with_image(side, side)
+      .with_image(black_side, black_side)
       .value();
 }
 

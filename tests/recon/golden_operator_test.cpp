@@ -18,7 +18,7 @@ using recon::Response;
 
 namespace {
 
-constexpr int side = 40;
+constexpr int picture_side = 40;
 
 /// FNV-1a over the bits.
 std::uint64_t fingerprint(const std::vector<float>& y, const std::vector<float>& x) {
@@ -40,11 +40,11 @@ Response rectangles(bool uneven) {
   std::uint32_t state = 12345;
   for (int k = 0; k < 5; ++k) {
     for (int image = 0; image < 8; ++image) {
-      for (int row = 0; row < side; ++row) {
-        for (int col = 0; col < side; ++col) {
+      for (int row = 0; row < picture_side; ++row) {
+        for (int col = 0; col < picture_side; ++col) {
           int r = (image & 4) != 0 ? col : row, c = (image & 4) != 0 ? row : col;
-          r = (image & 2) != 0 ? side - 1 - r : r;
-          c = (image & 1) != 0 ? side - 1 - c : c;
+          r = (image & 2) != 0 ? picture_side - 1 - r : r;
+          c = (image & 1) != 0 ? picture_side - 1 - c : c;
           const int top = 3 * k + 1, left = 5 * k + 2, height = 11 + k, width = 17 - k;
           const bool in = r >= top && r < top + height && c >= left && c < left + width;
           const bool rim = in && (c == left || c == left + width - 1);
@@ -55,7 +55,10 @@ Response rectangles(bool uneven) {
       }
     }
   }
-  return Response::from_dense(40, side * side, std::move(values)).value().with_image(side, side).value();
+  return Response::from_dense(40, picture_side * picture_side, std::move(values))
+      .value()
+      .with_image(picture_side, picture_side)
+      .value();
 }
 
 std::uint64_t golden(const recon::core::LinearOperator<float>& op) {

@@ -18,7 +18,7 @@ using namespace compueye::tests;
 
 namespace {
 
-constexpr int pixels = 120;
+constexpr int signal_length = 120;
 constexpr double e = 0.1;
 
 struct SparseProblem {
@@ -29,8 +29,10 @@ struct SparseProblem {
 
 SparseProblem sparse_problem(std::uint64_t seed, double sigma) {
   Random random(seed);
-  SparseProblem p{random_response(random, 40, Picture{1, pixels}, 0.4), std::vector<double>(pixels, 0.0), {}};
-  for (int dot = 0; dot < 5; ++dot) p.truth[static_cast<std::size_t>(random.below(pixels))] = random.uniform(0.5, 1.0);
+  SparseProblem p{
+      random_response(random, 40, Picture{1, signal_length}, 0.4), std::vector<double>(signal_length, 0.0), {}};
+  for (int dot = 0; dot < 5; ++dot)
+    p.truth[static_cast<std::size_t>(random.below(signal_length))] = random.uniform(0.5, 1.0);
   std::vector<double> samples(40);
   p.a.forward(p.truth, samples);
   for (double& s : samples) s += sigma * random.normal();
@@ -69,7 +71,7 @@ TEST_CASE("l1 reweighting meets the conditions of a minimum of the weighted obje
     const SolvedFrame first = solved(p, objective_of(lambda), plan);
     plan.l1_reweighting = e;
     const SolvedFrame second = solved(p, objective_of(lambda), plan);
-    std::vector<double> residual(40), slope(pixels);
+    std::vector<double> residual(40), slope(signal_length);
     p.a.forward(std::vector<double>(second.x.begin(), second.x.end()), residual);
     double objective = 0.0;
     for (std::size_t m = 0; m < 40; ++m) {
@@ -77,7 +79,7 @@ TEST_CASE("l1 reweighting meets the conditions of a minimum of the weighted obje
       objective += 0.5 * residual[m] * residual[m];
     }
     p.a.adjoint(residual, slope);
-    for (std::size_t n = 0; n < pixels; ++n) {
+    for (std::size_t n = 0; n < signal_length; ++n) {
       const double weight = lambda * 2.0 * e / (std::abs(first.x[n]) + e);
       objective += weight * second.x[n];
       if (second.x[n] <= 0.0F) CHECK(slope[n] + weight > -2e-3);
@@ -109,7 +111,7 @@ TEST_CASE("l1 reweighting starts every frame afresh, and reports no gap") {
   const auto solver = Reconstructor::create(p.a, objective_of(0.1), plan);
   REQUIRE(solver.has_value());
   const recon::AlignedWorkspace workspace(solver->required_bytes());
-  std::vector<float> x(pixels), again(pixels);
+  std::vector<float> x(signal_length), again(signal_length);
   CHECK(solver->solve(p.y, {}, workspace.span(), x).duality_gap < 0.0);
   static_cast<void>(solver->solve(q.y, {}, workspace.span(), again));
   static_cast<void>(solver->solve(p.y, {}, workspace.span(), again));

@@ -54,13 +54,13 @@ Frame with_repeated_rows(const Frame& frame, int distinct) {
   return {Response::from_dense(40, 80, std::move(values)).value().with_image(8, 10).value(), frame.y};
 }
 
-Response scaled(const Response& a, double scale) {
+Response in_unit(const Response& a, double scale) {
   std::vector<std::int32_t> rows;
   for (int m = 0; m < a.rows(); ++m) rows.push_back(m);
   return a.select_rows(rows, std::vector<double>(rows.size(), scale));
 }
 
-std::vector<float> scaled(const std::vector<double>& y, double scale) {
+std::vector<float> in_unit(const std::vector<double>& y, double scale) {
   std::vector<float> out;
   for (const double v : y) out.push_back(static_cast<float>(v * scale));
   return out;
@@ -91,7 +91,7 @@ TEST_CASE("the unit of A and of x does not matter: the picture follows it") {
     plan.iterations = 300;
     plan.measure_gap = true;
     const auto plain = Reconstructor::create(frame.a, make_objective(basis, ConstraintKind::box, 0.05), plan).value();
-    const SolvedFrame expected = solve_frame(plain, scaled(frame.y, 1.0), weights);
+    const SolvedFrame expected = solve_frame(plain, in_unit(frame.y, 1.0), weights);
     REQUIRE(expected.info.health == Health::converged);
     for (const double unit_of_a : {1e-9, 1e-6, 1e-3, 1e4, 1e6, 1e9}) {
       for (const double unit_of_x : {1e-3, 1.0, 1e3}) {
@@ -99,9 +99,9 @@ TEST_CASE("the unit of A and of x does not matter: the picture follows it") {
         CAPTURE(unit_of_x);
         const Objective objective =
             make_objective(basis, ConstraintKind::box, 0.05 * unit_of_a * unit_of_a * unit_of_x, unit_of_x);
-        const auto solver = Reconstructor::create(scaled(frame.a, unit_of_a), objective, plan);
+        const auto solver = Reconstructor::create(in_unit(frame.a, unit_of_a), objective, plan);
         REQUIRE(solver.has_value());
-        SolvedFrame solved = solve_frame(*solver, scaled(frame.y, unit_of_a * unit_of_x), weights);
+        SolvedFrame solved = solve_frame(*solver, in_unit(frame.y, unit_of_a * unit_of_x), weights);
         for (float& v : solved.x) v = static_cast<float>(static_cast<double>(v) / unit_of_x);
         CHECK(relative_difference(solved.x, expected.x) < 2e-5);
         const double unit_of_y = unit_of_a * unit_of_x;
@@ -117,17 +117,17 @@ TEST_CASE("a scaling by a power of two changes no bit of the picture") {
   const Frame frame = noisy_frame();
   const auto plain =
       Reconstructor::create(frame.a, make_objective(BasisKind::dct, ConstraintKind::box, 0.05), {}).value();
-  const auto larger = Reconstructor::create(scaled(frame.a, 0x1p20),
+  const auto larger = Reconstructor::create(in_unit(frame.a, 0x1p20),
                                             make_objective(BasisKind::dct, ConstraintKind::box, 0.05 * 0x1p40), {});
   REQUIRE(larger.has_value());
-  CHECK(solve_frame(plain, scaled(frame.y, 1.0)).x == solve_frame(*larger, scaled(frame.y, 0x1p20)).x);
+  CHECK(solve_frame(plain, in_unit(frame.y, 1.0)).x == solve_frame(*larger, in_unit(frame.y, 0x1p20)).x);
 }
 
 TEST_CASE("a response whose samples would be no float32 is refused, not shown black") {
   const Frame frame = noisy_frame();
   for (const double unit : {1e-300, 1e-38, 1e38, 1e200}) {
     CAPTURE(unit);
-    const Response a = scaled(frame.a, unit);
+    const Response a = in_unit(frame.a, unit);
     const double column = std::sqrt(a.squared_norm() / a.cols());
     test::check_error(Reconstructor::create(a, Objective{}, {}), ErrorCode::out_of_range, "response",
                       {recon::number_text(column), "1e-35", "1e35"});
@@ -139,7 +139,7 @@ TEST_CASE("converged means close to the optimum, whatever rho is") {
   int converged = 0, refused = 0;
   for (const Frame& frame : {noisy, with_repeated_rows(noisy, 25)}) {
     const Objective objective = make_objective(BasisKind::dct, ConstraintKind::box, 0.05);
-    std::vector<double> y = to_double(scaled(frame.y, 1.0));
+    std::vector<double> y = to_double(in_unit(frame.y, 1.0));
     const auto best = recon::reference::solve_reference(frame.a, objective, y);
     REQUIRE(best.converged);
     for (const auto precision : {Precision::f32, Precision::f64}) {
@@ -158,7 +158,7 @@ TEST_CASE("converged means close to the optimum, whatever rho is") {
           ++refused;
           continue;
         }
-        const SolvedFrame solved = solve_frame(*solver, scaled(frame.y, 1.0));
+        const SolvedFrame solved = solve_frame(*solver, in_unit(frame.y, 1.0));
         CHECK(solved.info.health != Health::invalid);
         CHECK(std::all_of(solved.x.begin(), solved.x.end(), [](float v) { return v >= 0.0F && v <= 1.0F; }));
         if (solved.info.health != Health::converged) continue;
@@ -247,7 +247,7 @@ TEST_CASE("weights of one cost nothing and change nothing, also where none may d
   plan.max_reweighted = 0;
   const auto solver =
       Reconstructor::create(frame.a, make_objective(BasisKind::dct, ConstraintKind::box, 0.05), plan).value();
-  const auto y = scaled(frame.y, 1.0);
+  const auto y = in_unit(frame.y, 1.0);
   const SolvedFrame bare = solve_frame(solver, y), with_ones = solve_frame(solver, y, std::vector<float>(40, 1.0F));
   CHECK(bare.x == with_ones.x);
   CHECK(bare.info.channels_reweighted == 0);
@@ -263,7 +263,7 @@ TEST_CASE("weights next to nought and next to one are as good as nought and one"
   plan.max_reweighted = 40;
   const auto solver =
       Reconstructor::create(frame.a, make_objective(BasisKind::dct, ConstraintKind::box, 0.05), plan).value();
-  const auto y = scaled(frame.y, 1.0);
+  const auto y = in_unit(frame.y, 1.0);
   const auto with = [&](float w) {
     std::vector<float> weights(40, 1.0F);
     for (std::size_t m = 0; m < 40; m += 4) weights[m] = w;
@@ -304,7 +304,7 @@ TEST_CASE("a frame that overflows is invalid, black and without figures") {
     Plan plan;
     plan.precision = precision;
     // A picture 1e6 times as large as the samples.
-    const auto solver = Reconstructor::create(scaled(frame.a, 1e-6),
+    const auto solver = Reconstructor::create(in_unit(frame.a, 1e-6),
                                               make_objective(BasisKind::identity, ConstraintKind::none, 0.0), plan);
     REQUIRE(solver.has_value());
     const SolvedFrame solved = solve_frame(*solver, std::vector<float>(40, 3e38F));

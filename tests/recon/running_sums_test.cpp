@@ -20,7 +20,7 @@ using recon::Response;
 
 namespace {
 
-struct Eye {
+struct SummedEye {
   std::string name;
   Response a;  // seeing rows
 };
@@ -50,9 +50,9 @@ Response random_runs(Random& random, int count, int rows, int cols) {
   return seeing(Response::from_dense(count, rows * cols, values).value().with_image(rows, cols).value());
 }
 
-std::vector<Eye> eyes() {
+std::vector<SummedEye> eyes() {
   Random random(61);
-  std::vector<Eye> all;
+  std::vector<SummedEye> all;
   const auto nominal = [&](int side, double dphi, double acceptance, const hal::ObjectPlane& plane) {
     all.push_back({"nominal " + std::to_string(side),
                    seeing(calib::nominal_response(geometry(side, dphi, acceptance), plane).value())});
@@ -71,7 +71,7 @@ std::vector<Eye> eyes() {
 }
 
 template <class T>
-std::vector<T> cast(const std::vector<double>& v) {
+std::vector<T> in_precision(const std::vector<double>& v) {
   std::vector<T> out;
   for (const double each : v) out.push_back(static_cast<T>(each));
   return out;
@@ -80,7 +80,7 @@ std::vector<T> cast(const std::vector<double>& v) {
 /// Every rounding of a tap moves a running sum of at most cols / 2 pixels of magnitude one by half a unit, as does
 /// every addition within that sum, and the sum over all taps once more.
 template <class T>
-double bound(const Eye& eye, int m) {
+double bound(const SummedEye& eye, int m) {
   double differences = 0.0, entries = 0.0, before = 0.0;
   std::int32_t last = -2;
   int taps = 0;
@@ -99,7 +99,7 @@ double bound(const Eye& eye, int m) {
 }
 
 template <class T>
-void check_against_double(const Eye& eye, const recon::MirrorSymmetry& symmetry,
+void check_against_double(const SummedEye& eye, const recon::MirrorSymmetry& symmetry,
                           const std::vector<std::int32_t>& transposed, std::size_t at_once) {
   Random random(62);
   const auto tables = recon::running_sum_tables<T>(eye.a, symmetry, transposed);
@@ -109,7 +109,7 @@ void check_against_double(const Eye& eye, const recon::MirrorSymmetry& symmetry,
   const recon::AlignedWorkspace memory(tables->view.scratch_size() * sizeof(T));
   auto* scratch = reinterpret_cast<T*>(memory.span().data());
   const auto x = random_vector(random, eye.a.cols()), u = random_vector(random, eye.a.rows());
-  const auto xt = cast<T>(x), ut = cast<T>(u);
+  const auto xt = in_precision<T>(x), ut = in_precision<T>(u);
   std::vector<T> y(u.size()), back(x.size(), T(1));
   recon::core::forward(tables->view, xt.data(), y.data(), scratch);
   recon::core::adjoint_accumulate(tables->view, ut.data(), back.data(), scratch);
@@ -136,7 +136,7 @@ void check_against_double(const Eye& eye, const recon::MirrorSymmetry& symmetry,
 
 TEST_CASE("running sums are A and A' within the bound of their sums, with symmetry and without") {
   int with_four = 0, with_eight = 0, banded = 0;
-  for (const Eye& eye : eyes()) {
+  for (const SummedEye& eye : eyes()) {
     CAPTURE(eye.name);
     const auto found = recon::find_mirror_symmetry(eye.a);
     const auto transposed = recon::find_diagonal_symmetry(eye.a);

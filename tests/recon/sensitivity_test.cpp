@@ -18,7 +18,7 @@ using recon::Response;
 
 namespace {
 
-constexpr double lambda = 0.3;
+constexpr double damping = 0.3;
 
 struct Linear {
   Random random{161};
@@ -35,7 +35,7 @@ struct Linear {
       picture[n] = static_cast<double>(truth.pixels[static_cast<std::size_t>(n)]);
     }
     for (int m = 0; m < 20; ++m) a.for_each_in_row(m, [&](std::int32_t n, double v) { matrix(m, n) = v; });
-    objective.lambda = lambda;
+    objective.lambda = damping;
     plan.solver = recon::solver_named("tikhonov");
     plan.precision = recon::Precision::f64;
   }

@@ -31,7 +31,7 @@ using recon::Response;
 
 namespace {
 
-struct Named {
+struct NamedMatrix {
   const char* name;
   Response a;
 };
@@ -45,10 +45,10 @@ Response measured_rows(int rows, int cols, int side) {
   return calib::plausible_response(eye, {rows, cols, 60.0, 60.0, 10.0}, {}, 3).value();
 }
 
-std::vector<Named> matrices() {
+std::vector<NamedMatrix> smooth_matrices() {
   Random random(111);
   const Response eye = measured_rows(100, 97, test::sanitized ? 5 : 9);
-  std::vector<Named> all;
+  std::vector<NamedMatrix> all;
   all.push_back({"eye with blind rows", eye.without_rows(std::vector<int>{3, 4, 5, 6, 11})});
   all.push_back({"odd picture", random_response(random, 7, Picture{17, 19}, 1.0)});
   all.push_back({"sparse and of both signs", random_response(random, 9, Picture{16, 33}, 0.05)});
@@ -57,7 +57,7 @@ std::vector<Named> matrices() {
 }
 
 template <class T>
-std::vector<T> cast(const std::vector<double>& v) {
+std::vector<T> to_precision(const std::vector<double>& v) {
   return std::vector<T>(v.begin(), v.end());
 }
 
@@ -72,7 +72,7 @@ void check_against_double(const Response& exact) {
   const auto op = recon::make_operator<T>(a, OperatorKind::wavelet_runs, kept).value();
   CHECK(op.kind == OperatorKind::wavelet_runs);
   CHECK(recon::core::bytes(op) == kept.bytes());
-  const auto x = cast<T>(random_vector(random, a.cols())), u = cast<T>(random_vector(random, a.rows()));
+  const auto x = to_precision<T>(random_vector(random, a.cols())), u = to_precision<T>(random_vector(random, a.rows()));
   std::vector<T> y(u.size(), T(7)), back(x.size(), T(1)), scratch(op.scratch_size());
   recon::core::forward(op, x.data(), y.data(), scratch.data());
   recon::core::adjoint_accumulate(op, u.data(), back.data(), scratch.data());
@@ -149,7 +149,7 @@ TEST_CASE("a plane has no details, a white pixel has those of the 9/7 filters") 
 }
 
 TEST_CASE("wavelet runs are the rounded matrix and its transpose within the rounding of their sums") {
-  for (const Named& named : matrices()) {
+  for (const NamedMatrix& named : smooth_matrices()) {
     CAPTURE(named.name);
     check_against_double<float>(named.a);
     check_against_double<double>(named.a);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim/random/random.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 using sim::ConeSection;
@@ -13,7 +14,7 @@ using sim::Interval;
 
 namespace {
 
-constexpr double deg = std::numbers::pi / 180.0;
+using compueye::test::deg;
 
 // Positive inside: the angle condition itself.
 double inside_by(const hal::Vec3& axis, double half_angle, double u, double v, double depth) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/hal/units.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/sim/plane_levels.hpp"
 
@@ -14,7 +15,7 @@ using test::EffectRig;
 
 namespace {
 
-constexpr double deg = std::numbers::pi / 180.0;
+using compueye::test::deg;
 
 double angle(const hal::Vec3& a, const hal::Vec3& b) {
   const hal::Vec3 across{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

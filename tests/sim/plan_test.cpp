@@ -15,13 +15,13 @@ using namespace compueye::sim;
 namespace {
 
 // One LSB of read noise over 100 LSB of signal; kappa 100 for white errors, so that noise makes about 0.0108.
-struct Bench {
+struct PlanBench {
   EyeToSimulate board;
   Scene scene = scene_on(board.object, "grey", hal::Image(1, 1, 0.5F));
   Preview preview;
   Sensitivity sensitivity{{100.0, 100.0, 1.0, 10.0, 1000.0}, true};
 
-  Bench() {
+  PlanBench() {
     board.sensor.read_noise_lsb = 1.0;
     preview.levels.assign(64, 100.0);
     preview.mean = preview.rms = preview.largest = 100.0;
@@ -76,7 +76,7 @@ Decision decision_of(const Plan& plan, std::string_view effect) {
 }  // namespace
 
 TEST_CASE("what is left out adds at most a tenth of what the noise makes of a reconstruction") {
-  const Bench bench;
+  const PlanBench bench;
   const std::array list{&small, &large, &middle, &middle_cheap};
   const Plan plan = bench.plan(list);
   CHECK(plan.noise_lsb == doctest::Approx(std::sqrt(1.0 + 1.0 / 12.0)));
@@ -94,7 +94,7 @@ TEST_CASE("what is left out adds at most a tenth of what the noise makes of a re
 }
 
 TEST_CASE("an effect counts by what a reconstruction bears of its kind") {
-  const Bench bench;
+  const PlanBench bench;
   const std::array list{&shape, &gain};
   const Plan plan = bench.plan(list);
   CHECK(decision_of(plan, "shape") == Decision::on);
@@ -102,7 +102,7 @@ TEST_CASE("an effect counts by what a reconstruction bears of its kind") {
 }
 
 TEST_CASE("what nothing calls for is off, and what has no bound is never left out") {
-  const Bench bench;
+  const PlanBench bench;
   const std::array list{&absent, &unknown, &huge};
   const Plan plan = bench.plan(list);
   CHECK(decision_of(plan, "absent") == Decision::not_called);
@@ -114,7 +114,7 @@ TEST_CASE("what nothing calls for is off, and what has no bound is never left ou
 }
 
 TEST_CASE("a scene's word stands, and everything and nothing are what they say") {
-  Bench bench;
+  PlanBench bench;
   const std::array list{&small, &large, &absent};
   bench.scene.effects = {{"small", Forced::on}, {"large", Forced::off}, {"absent", Forced::on}};
   for (const PlanMode mode : {PlanMode::automatic, PlanMode::everything, PlanMode::nothing}) {
@@ -131,7 +131,7 @@ TEST_CASE("a scene's word stands, and everything and nothing are what they say")
 }
 
 TEST_CASE("photons are noise, too: in bright light more may be left out") {
-  Bench bench;
+  PlanBench bench;
   const std::array list{&large};
   CHECK(decision_of(bench.plan(list), "large") == Decision::on);
   bench.board.detector.electrons_per_lsb = 1.0;  // 100 electrons: ten of noise
@@ -141,7 +141,7 @@ TEST_CASE("photons are noise, too: in bright light more may be left out") {
 }
 
 TEST_CASE("without light a plan has finite figures") {
-  Bench bench;
+  PlanBench bench;
   bench.preview = Preview{};
   bench.preview.levels.assign(64, 0.0);
   const std::array list{&small, &large};
@@ -152,7 +152,7 @@ TEST_CASE("without light a plan has finite figures") {
 }
 
 TEST_CASE("provenance names every effect that anything called for, with decision, reason and bound") {
-  const Bench bench;
+  const PlanBench bench;
   const std::array list{&small, &large, &absent};
   const std::string text = provenance_of(bench.plan(list));
   CHECK(text ==

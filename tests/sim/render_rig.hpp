@@ -10,10 +10,9 @@
 
 #include "sim/pictures/built_in_scenes.hpp"
 #include "sim/render/renderer.hpp"
+#include "tests/hal/units.hpp"
 
 namespace compueye::test {
-
-inline constexpr double deg = std::numbers::pi / 180.0;
 
 /// An eye before its object plane, and how a scene is rendered for it.
 struct RenderRig {

@@ -19,7 +19,7 @@ Levels levels_of(const EffectRig& rig, const Brightness& bright) {
   return test::plane_levels(sim::OpticsAsBuilt::drawn(rig.board.eye), rig, bright);
 }
 
-void check_bound(const EffectRig& rig, std::string_view name, double truth, double loosest = 10.0) {
+void check_scene_bound(const EffectRig& rig, std::string_view name, double truth, double loosest = 10.0) {
   CAPTURE(name);
   CAPTURE(truth);
   CAPTURE(rig.preview.rms);
@@ -69,7 +69,7 @@ TEST_CASE("motion is called for by what moves and bounded by the gradient over i
       squares += std::pow(test::rms_difference(moved, rig.preview.levels), 2) / frames;
     }
     CAPTURE(duration);
-    check_bound(rig, "motion", std::sqrt(squares));
+    check_scene_bound(rig, "motion", std::sqrt(squares));
   }
   CHECK(rig.workings({"motion"}).render.motion);
   CHECK_FALSE(rig.workings({}).render.motion);
@@ -87,7 +87,7 @@ TEST_CASE("what moves while light is gathered blurs by the second derivative") {
       return sum;
     });
     CAPTURE(speed);
-    check_bound(rig, "motion_blur", test::rms_difference(blurred, rig.preview.levels));
+    check_scene_bound(rig, "motion_blur", test::rms_difference(blurred, rig.preview.levels));
   }
   CHECK(rig.workings({"motion_blur"}).exposure.instants > 1);
   CHECK(rig.workings({"motion_blur"}).exposure.instants <= 16);
@@ -106,7 +106,7 @@ TEST_CASE("channels that are read later see what has moved since") {
     const Levels at = levels_of(rig, [&](double x, double y) { return still(x, y - way); });
     for (std::size_t m = static_cast<std::size_t>(turn); m < 64; m += 8) skewed[m] = at[m];
   }
-  check_bound(rig, "sampling_skew", test::rms_difference(skewed, rig.preview.levels));
+  check_scene_bound(rig, "sampling_skew", test::rms_difference(skewed, rig.preview.levels));
   CHECK(rig.workings({"sampling_skew"}).exposure.channels_in_turn);
   CHECK(rig.workings({"sampling_skew"}).exposure.scan_instants >= 2);
   rig.board.detector.mux_channels = 0;
@@ -130,7 +130,7 @@ TEST_CASE("a display moves in steps of its refresh, paper does not") {
     const Levels then = levels_of(rig, [&](double x, double y) { return still(x + late, y); });
     squares += std::pow(test::rms_difference(then, rig.preview.levels), 2) / 8.0;
   }
-  check_bound(rig, "display_refresh", std::sqrt(squares));
+  check_scene_bound(rig, "display_refresh", std::sqrt(squares));
 }
 
 TEST_CASE("what is nearer, farther or tilted is bounded by how far rays go aside on it") {
@@ -146,7 +146,7 @@ TEST_CASE("what is nearer, farther or tilted is bounded by how far rays go aside
           return flat(apex.x + far * (x - apex.x), apex.y + far * (y - apex.y));
         });
     CAPTURE(depth);
-    check_bound(rig, "off_plane", test::rms_difference(deep, rig.preview.levels));
+    check_scene_bound(rig, "off_plane", test::rms_difference(deep, rig.preview.levels));
   }
   EffectRig tilted = noise_rig();
   const double angle = 0.3;
@@ -160,7 +160,7 @@ TEST_CASE("what is nearer, farther or tilted is bounded by how far rays go aside
                                          const double s = (z + t * a.x - a.z) / ((z - a.z) - t * (x - a.x));
                                          return flat((a.x + s * (x - a.x)) / std::cos(angle), a.y + s * (y - a.y));
                                        });
-  check_bound(tilted, "off_plane", test::rms_difference(seen, tilted.preview.levels));
+  check_scene_bound(tilted, "off_plane", test::rms_difference(seen, tilted.preview.levels));
   CHECK(tilted.workings({"off_plane"}).render.true_depth);
   EffectRig moving = noise_rig();
   moving.scene.surfaces[0].motion.velocity_mm_per_s = {1.0, 0.0, 0.0};
@@ -181,7 +181,7 @@ TEST_CASE("overlapping surfaces hide each other, those side by side do not") {
   const Brightness sheet = test::brightness_of(rig.scene.surfaces[0].picture(), rig.board.object);
   test::look_at(rig, [&](double x, double y) { return sheet(x, y) + (on_card(x, y) ? 0.9 : 0.0); });
   const Levels hidden = levels_of(rig, [&](double x, double y) { return on_card(x, y) ? 0.9 : sheet(x, y); });
-  check_bound(rig, "occlusion", test::rms_difference(hidden, rig.preview.levels));
+  check_scene_bound(rig, "occlusion", test::rms_difference(hidden, rig.preview.levels));
   rig.scene.surfaces[1].pose.centre_mm.x = 6.0;
   CHECK(rig.called("occlusion").empty());
   rig.scene.surfaces[1].motion.velocity_mm_per_s.x = -1.0;
@@ -200,7 +200,7 @@ TEST_CASE("a display shows its picture to the power of gamma above its black") {
   const hal::Image told = rig.workings({"display_response"}).scene.surfaces[0].picture();
   for (std::size_t n = 0; n < shown.pixels.size(); ++n) CHECK(told.pixels[n] == doctest::Approx(shown.pixels[n]));
   const Levels levels = levels_of(rig, test::brightness_of(shown, rig.board.object));
-  check_bound(rig, "display_response", test::rms_difference(levels, rig.preview.levels));
+  check_scene_bound(rig, "display_response", test::rms_difference(levels, rig.preview.levels));
 }
 
 TEST_CASE("a display's pixels run into each other by less than the second derivative says") {
@@ -223,7 +223,7 @@ TEST_CASE("a display's pixels run into each other by less than the second deriva
     }
     return sum;
   });
-  check_bound(rig, "pixel_blur", test::rms_difference(blurred, rig.preview.levels));
+  check_scene_bound(rig, "pixel_blur", test::rms_difference(blurred, rig.preview.levels));
 }
 
 TEST_CASE("the lamp's light falls off with the square of the distance from the middle") {
@@ -233,7 +233,7 @@ TEST_CASE("the lamp's light falls off with the square of the distance from the m
   const Brightness even = test::brightness_of(test::pixel_noise(), rig.board.object);
   const Levels expected =
       levels_of(rig, [&](double x, double y) { return even(x, y) * (1.0 - 0.4 * (x * x + y * y) / corner2); });
-  check_bound(rig, "light_falloff", test::rms_difference(expected, rig.preview.levels));
+  check_scene_bound(rig, "light_falloff", test::rms_difference(expected, rig.preview.levels));
   const hal::Image lit = rig.workings({"light_falloff"}).scene.surfaces[0].picture();
   const Levels told = levels_of(rig, test::brightness_of(lit, rig.board.object));
   CHECK(test::rms_difference(told, expected) < 2e-3 * rig.preview.rms);
@@ -260,7 +260,7 @@ TEST_CASE("coloured pictures are weighed by lamp and eye, grey ones and even eye
   for (std::size_t n = 0; n < seen.pixels.size(); ++n) CHECK(told[0].pixels[n] == doctest::Approx(seen.pixels[n]));
   test::look_at(rig, test::brightness_of(mean, rig.board.object));
   const Levels weighed = levels_of(rig, test::brightness_of(seen, rig.board.object));
-  check_bound(rig, "spectral_response", test::rms_difference(weighed, rig.preview.levels));
+  check_scene_bound(rig, "spectral_response", test::rms_difference(weighed, rig.preview.levels));
   rig.board.detector.spectral_response = {1.0, 2.0, 4.0};
   CHECK(rig.called("spectral_response").empty());
 }
@@ -273,7 +273,7 @@ TEST_CASE("the lamp drifts linearly in time") {
   const auto frames = rig.play({"lamp_drift"}, 181);
   CHECK(frames[0][0] == 1000.0);
   CHECK(frames[180][3] == doctest::Approx(990.0));
-  check_bound(rig, "lamp_drift", rig.change({"lamp_drift"}, 180));
+  check_scene_bound(rig, "lamp_drift", rig.change({"lamp_drift"}, 180));
   rig.scene.surfaces[0].shines = true;
   CHECK(rig.called("lamp_drift").empty());
 }
@@ -293,7 +293,7 @@ TEST_CASE("flicker of the mains is averaged over the integration time") {
     }
     CHECK(frames[f][1] == doctest::Approx(1000.0 * mean).epsilon(1e-5));
   }
-  check_bound(rig, "mains_flicker", rig.change({"mains_flicker"}, 40));
+  check_scene_bound(rig, "mains_flicker", rig.change({"mains_flicker"}, 40));
   for (const double whole_ms : {10.0, 20.0, 40.0}) {
     rig.board.frame_rate_hz = 20.0;
     rig.board.detector.integration_ms = whole_ms;

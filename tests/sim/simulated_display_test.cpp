@@ -9,12 +9,13 @@
 #include "sim/render/drawn_signals.hpp"
 #include "sim/simulated_display.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
+using compueye::test::ms;
 
 sim::SimulatedEyeSettings before_a_display() {
   sim::SimulatedEyeSettings settings;
@@ -33,13 +34,13 @@ sim::SimulatedEyeSettings before_a_display() {
   return settings;
 }
 
-struct Bench {
+struct DisplayBench {
   hal::VirtualClock clock;
   sim::SimulatedEyeSettings settings;
   std::unique_ptr<sim::SimulatedEye> eye;
   sim::SimulatedDisplay display;
 
-  explicit Bench(sim::SimulatedEyeSettings wanted = before_a_display())
+  explicit DisplayBench(sim::SimulatedEyeSettings wanted = before_a_display())
       : settings(wanted), eye(sim::SimulatedEye::create(wanted, clock).value()), display(*eye, clock) {
     REQUIRE(eye->start().has_value());
   }
@@ -71,7 +72,7 @@ hal::Image chequers() {
   return picture;
 }
 
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+double largest_level_difference(const std::vector<double>& a, const std::vector<double>& b) {
   double most = 0.0;
   for (std::size_t m = 0; m < a.size(); ++m) most = std::max(most, std::fabs(a[m] - b[m]));
   return most;
@@ -80,19 +81,19 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 }  // namespace
 
 TEST_CASE("a display's picture is seen once it has settled, and nothing when its light is off") {
-  Bench bench;
+  DisplayBench bench;
   const hal::Image picture = chequers();
   REQUIRE(bench.display.show(picture.pixels).has_value());
-  CHECK(largest_difference(bench.levels(100 * ms), bench.expected(picture)) <= 1.0);
+  CHECK(largest_level_difference(bench.levels(100 * ms), bench.expected(picture)) <= 1.0);
   REQUIRE(bench.display.off().has_value());
   for (const double level : bench.levels(100 * ms)) CHECK(level == 0.0);
   const hal::Image white(8, 8, 1.0F);
   REQUIRE(bench.display.show(white.pixels).has_value());
-  CHECK(largest_difference(bench.levels(100 * ms), bench.expected(white)) <= 1.0);
+  CHECK(largest_level_difference(bench.levels(100 * ms), bench.expected(white)) <= 1.0);
 }
 
 TEST_CASE("a picture comes exponentially with 4 ms, from whatever was there") {
-  Bench bench;
+  DisplayBench bench;
   const hal::Image white(8, 8, 1.0F), black(8, 8, 0.0F);
   REQUIRE(bench.display.show(white.pixels).has_value());
   const auto full = bench.levels(100 * ms);
@@ -108,7 +109,7 @@ TEST_CASE("a picture comes exponentially with 4 ms, from whatever was there") {
 }
 
 TEST_CASE("light that is on its way goes on from where it is") {
-  Bench bench;
+  DisplayBench bench;
   const hal::Image white(8, 8, 1.0F);
   REQUIRE(bench.display.show(white.pixels).has_value());
   const auto full = bench.levels(100 * ms);
@@ -127,7 +128,7 @@ TEST_CASE("what a display does to pictures is done to those that it is given: ga
   settings.scenes[0].display.black_level = 0.1;
   settings.scenes[0].display.drift_per_hour = 0.36;
   settings.scenes[0].effects = {{"display_response", sim::Forced::on}, {"display_drift", sim::Forced::on}};
-  Bench bench(settings);
+  DisplayBench bench(settings);
   const hal::Image grey(8, 8, 128.0F / 255.0F), white(8, 8, 1.0F);
   REQUIRE(bench.display.show(white.pixels).has_value());
   const auto full = bench.levels(100 * ms);
@@ -141,12 +142,12 @@ TEST_CASE("what a display does to pictures is done to those that it is given: ga
 }
 
 TEST_CASE("a picture of another size, or one that is none, is refused and changes nothing") {
-  Bench bench;
+  DisplayBench bench;
   const hal::Image white(8, 8, 1.0F), small(4, 4, 1.0F);
   REQUIRE(bench.display.show(white.pixels).has_value());
   test::check_error(bench.display.show(small.pixels), hal::ErrorCode::mismatch, "display", {"16", "64"});
   hal::Image bad(8, 8, 1.0F);
   bad.pixels[3] = std::nanf("");
   CHECK_FALSE(bench.eye->show(bad, 0.0).has_value());
-  CHECK(largest_difference(bench.levels(100 * ms), bench.expected(white)) <= 1.0);
+  CHECK(largest_level_difference(bench.levels(100 * ms), bench.expected(white)) <= 1.0);
 }

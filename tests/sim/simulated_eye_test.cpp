@@ -10,6 +10,7 @@
 #include "sim/pictures/built_in_scenes.hpp"
 #include "sim/render/drawn_signals.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/units.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
 using namespace compueye;
@@ -20,10 +21,10 @@ using sim::SimulatedEyeSettings;
 
 namespace {
 
-constexpr std::int64_t ms = 1000000;
+using compueye::test::ms;
 constexpr std::int64_t forever = std::numeric_limits<std::int64_t>::max();
 
-SimulatedEyeSettings small_eye() {
+SimulatedEyeSettings simulated_settings() {
   SimulatedEyeSettings settings;
   settings.board.eye.interommatidial_rad = 1.5 * std::numbers::pi / 180.0;
   settings.board.eye.acceptance_rad = 8.0 * std::numbers::pi / 180.0;
@@ -37,7 +38,7 @@ SimulatedEyeSettings small_eye() {
 
 // 100 frames a second: frame f is exposed from 10 f to 10 (f + 1) ms after start().
 SimulatedEyeSettings paced_eye() {
-  SimulatedEyeSettings settings = small_eye();
+  SimulatedEyeSettings settings = simulated_settings();
   settings.frame_rate_hz = 100.0;
   return settings;
 }
@@ -69,7 +70,7 @@ TEST_CASE("the eye describes itself") {
 
 TEST_CASE("without noise the codes are the rounded signals of the optics") {
   hal::VirtualClock clock;
-  SimulatedEyeSettings settings = small_eye();
+  SimulatedEyeSettings settings = simulated_settings();
   settings.scenes[0].effects["read_noise"] = sim::Forced::off;
   const auto eye = make(settings, clock);
   const auto direct = sim::drawn_signals(settings.board.eye, settings.board.object, settings.scenes[0]).value();
@@ -88,9 +89,9 @@ TEST_CASE("without noise the codes are the rounded signals of the optics") {
 
 TEST_CASE("samples depend on seed and frame number only") {
   hal::VirtualClock clock;
-  const auto unpaced = make(small_eye(), clock);
+  const auto unpaced = make(simulated_settings(), clock);
   const auto paced = make(paced_eye(), clock);
-  SimulatedEyeSettings other_seed = small_eye();
+  SimulatedEyeSettings other_seed = simulated_settings();
   other_seed.seed = 12;
   const auto other = make(other_seed, clock);
   for (int run = 0; run < 2; ++run) {
@@ -121,7 +122,7 @@ TEST_CASE("samples depend on seed and frame number only") {
 
 TEST_CASE("scenes are shown in turn") {
   hal::VirtualClock clock;
-  SimulatedEyeSettings settings = small_eye();
+  SimulatedEyeSettings settings = simulated_settings();
   settings.scenes.push_back(sim::scene_on(settings.board.object, "white", hal::Image(1, 1, 1.0F)));
   settings.frames_per_scene = 3;
   for (sim::Scene& scene : settings.scenes) {
@@ -250,7 +251,7 @@ TEST_CASE("frames lost on the way are gaps, not overruns") {
 
 TEST_CASE("dead channels never tell anything, others fail from their frame on") {
   hal::VirtualClock clock;
-  SimulatedEyeSettings settings = small_eye();
+  SimulatedEyeSettings settings = simulated_settings();
   settings.board.sensor.dead = {17};
   settings.faults.invalid_channels = {{3, 0}, {60, 2}};
   const auto eye = make(settings, clock);
@@ -269,7 +270,7 @@ TEST_CASE("the stream ends at its limit and begins anew") {
   for (const double rate : {0.0, 100.0}) {
     CAPTURE(rate);
     hal::VirtualClock clock;
-    SimulatedEyeSettings settings = small_eye();
+    SimulatedEyeSettings settings = simulated_settings();
     settings.frame_rate_hz = rate;
     settings.frame_limit = 3;
     const auto eye = make(settings, clock);
@@ -299,7 +300,7 @@ TEST_CASE("the stream ends at its limit and begins anew") {
 
 TEST_CASE("a bright scene saturates and says so") {
   hal::VirtualClock clock;
-  SimulatedEyeSettings settings = small_eye();
+  SimulatedEyeSettings settings = simulated_settings();
   settings.scenes = {sim::scene_on(settings.board.object, "white", hal::Image(1, 1, 50.0F))};
   const auto eye = make(settings, clock);
   REQUIRE(eye->start().has_value());
@@ -313,7 +314,7 @@ TEST_CASE("reading does not allocate once the stream is started") {
   for (const double rate : {0.0, 100.0}) {
     CAPTURE(rate);
     hal::VirtualClock clock;
-    SimulatedEyeSettings settings = small_eye();
+    SimulatedEyeSettings settings = simulated_settings();
     settings.frame_rate_hz = rate;
     settings.frame_limit = 40;
     settings.faults = {{{3, 0}}, {7, 8}};
@@ -367,12 +368,12 @@ TEST_CASE("a paced eye keeps its account in real time") {
 TEST_CASE("settings that make no sense are refused by name") {
   hal::VirtualClock clock;
   const auto refused = [&](ErrorCode code, const std::string& place, const test::Named& named, auto change) {
-    SimulatedEyeSettings settings = small_eye();
+    SimulatedEyeSettings settings = simulated_settings();
     change(settings);
     test::check_error(SimulatedEye::create(std::move(settings), clock), code, place, named);
   };
   using S = SimulatedEyeSettings;
-  const std::string serial = small_eye().serial;
+  const std::string serial = simulated_settings().serial;
   refused(ErrorCode::usage, serial, {}, [](S& s) { s.scenes.clear(); });
   refused(ErrorCode::out_of_range, serial, {"frames_per_scene", "0", "1"}, [](S& s) { s.frames_per_scene = 0; });
   refused(ErrorCode::out_of_range, serial, {"fifo_frames", "0", "1"}, [](S& s) { s.fifo_frames = 0; });

@@ -8,12 +8,13 @@
 
 #include "sim/pictures/built_in_scenes.hpp"
 #include "sim/scene/scene_truth.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 
 namespace {
 
-constexpr double deg = 0.017453292519943295;
+using compueye::test::deg;
 
 hal::ObjectPlane plane(int side, double side_mm) {
   hal::ObjectPlane object;

@@ -1,4 +1,5 @@
 #include "tests/calib/estimate/built_eye.hpp"
+#include "tests/hal/units.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +14,6 @@
 
 namespace compueye::test {
 namespace {
-
-constexpr double deg = std::numbers::pi / 180.0;
 
 /// The board with a converter so fine that renders are exact and steps do not show, and nothing drawn anew each frame.
 sim::EyeToSimulate without_noise(sim::EyeToSimulate board) {

@@ -11,7 +11,7 @@ using namespace compueye::calib;
 
 namespace {
 
-constexpr double full = 4095.0, dark = 40.0;
+constexpr double full = 4095.0, dark_level = 40.0;
 
 /// A bow by sine, which is none of the model's, of `inl` LSB in the middle.
 double read_by(double value, double inl) {
@@ -27,7 +27,7 @@ std::vector<SplitWhite> splits_of(double inl, double noise, double drift, std::u
     const double white = 3000.0, share = 0.3 + 0.05 * k;
     const auto code = [&](double light) {
       lamp *= 1.0 + drift;
-      return std::vector<double>{read_by(dark + light * lamp, inl) + noise * draw(random)};
+      return std::vector<double>{read_by(dark_level + light * lamp, inl) + noise * draw(random)};
     };
     SplitWhite split;
     split.part = code(white * share);
@@ -46,8 +46,8 @@ double bow_left(const std::vector<LinearityTable>& tables, double inl) {
   };
   double most = 0.0;
   for (double share = 0.0; share <= 1.0; share += 0.05) {
-    const double line = told(dark) + share * (told(3040.0) - told(dark));
-    most = std::max(most, std::fabs(told(dark + share * 3000.0) - line));
+    const double line = told(dark_level) + share * (told(3040.0) - told(dark_level));
+    most = std::max(most, std::fabs(told(dark_level + share * 3000.0) - line));
   }
   return most;
 }
@@ -57,7 +57,7 @@ double bow_left(const std::vector<LinearityTable>& tables, double inl) {
 TEST_CASE("a converter's bow is told by light that adds up, also while the lamp drifts") {
   for (const double inl : {20.0, -12.0}) {
     CAPTURE(inl);
-    const std::vector<double> black{read_by(dark, inl)};
+    const std::vector<double> black{read_by(dark_level, inl)};
     for (const double drift : {0.0, 1e-5}) {
       const auto tables = linearity_tables(splits_of(inl, 0.05, drift, 3), black, full);
       REQUIRE(tables.size() == 1);
@@ -68,7 +68,7 @@ TEST_CASE("a converter's bow is told by light that adds up, also while the lamp 
 }
 
 TEST_CASE("a straight converter gets no table from noise, and neither do splits that are too few or empty") {
-  const std::vector<double> black{dark};
+  const std::vector<double> black{dark_level};
   int tables = 0;
   for (std::uint32_t seed = 0; seed < 100; ++seed)
     tables += linearity_tables(splits_of(0.0, 0.3, 0.0, seed), black, full).empty() ? 0 : 1;

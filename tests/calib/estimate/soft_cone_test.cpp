@@ -9,6 +9,7 @@
 
 #include "calib/nominal.hpp"
 #include "calib/pixel_grid.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 using calib::ConeParameters;
@@ -17,7 +18,7 @@ using calib::SoftCone;
 
 namespace {
 
-constexpr double deg = std::numbers::pi / 180.0;
+using compueye::test::deg;
 
 hal::EyeGeometry eye_of(int n, double interommatidial_deg, double acceptance_deg) {
   hal::EyeGeometry eye;

@@ -6,12 +6,14 @@
 #include <set>
 #include <vector>
 
+#include "tests/hal/units.hpp"
+
 using namespace compueye::device;
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
-constexpr std::int64_t second = 1000 * ms;
+using compueye::test::ms;
+using compueye::test::second;
 
 /// Every order works until the machine reads.
 std::vector<Order> go_to_read(DeviceMachine& machine, std::int64_t now_ns) {

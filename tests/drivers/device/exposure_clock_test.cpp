@@ -5,13 +5,14 @@
 #include <random>
 
 #include "drivers/device/stream_extent.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 using namespace compueye::device;
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
+using compueye::test::ms;
 constexpr std::int64_t hour = 3'600'000 * ms;
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "hal/clock.hpp"
 #include "tests/drivers/device/tampered_transport.hpp"
 #include "tests/drivers/protocol/emulated_eye.hpp"
+#include "tests/hal/units.hpp"
 
 /// An emulated eye with a source on it, and what it truly made.
 namespace compueye::device::tests {
@@ -26,8 +27,8 @@ using protocol::FaultKind;
 using protocol::hid_bus;
 using protocol::usb_bus;
 
-inline constexpr std::int64_t ms = 1'000'000;
-inline constexpr std::int64_t second = 1'000'000'000;
+using compueye::test::ms;
+using compueye::test::second;
 
 /// Frames that the device made for its host: all but those that it streamed unasked.
 inline std::uint64_t frames_made(const protocol::EmulatorTruth& truth) {

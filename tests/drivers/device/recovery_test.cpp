@@ -18,7 +18,7 @@ using protocol::tests::eye_settings;
 
 namespace {
 
-void read_frames(EyeRig& rig, int frames) {
+void read_on(EyeRig& rig, int frames) {
   for (int f = 0; f < frames; ++f) REQUIRE(rig.next_frame());
 }
 
@@ -28,7 +28,7 @@ std::uint64_t opens_of_an_outage(const Bus* bus, std::int64_t slice_ns, std::int
   constexpr std::uint64_t too_many = 1000;
   EyeRig rig(eye_settings(bus));
   REQUIRE(rig.start());
-  read_frames(rig, 5);
+  read_on(rig, 5);
   std::uint64_t opens = 0;
   rig.way->at_open = [&] { REQUIRE(++opens < too_many); };
   const std::int64_t now_ns = rig.clock.now_ns();
@@ -40,7 +40,7 @@ std::uint64_t opens_of_an_outage(const Bus* bus, std::int64_t slice_ns, std::int
   rig.inject({.kind = FaultKind::control_silence, .at_ns = now_ns + silent_ns, .duration_ns = 500 * ms});
   rig.inject({.kind = FaultKind::unplug, .at_ns = now_ns + unplugged_ns, .duration_ns = 2 * second});
   while (rig.clock.now_ns() < now_ns + 2 * second) static_cast<void>(rig.read(slice_ns));
-  read_frames(rig, 3);
+  read_on(rig, 3);
   return opens;
 }
 
@@ -68,13 +68,13 @@ TEST_CASE("a transport that answers at once with nothing neither stops read() no
   for (const Bus* const bus : buses) {
     EyeRig rig(eye_settings(bus));
     REQUIRE(rig.start());
-    read_frames(rig, 3);
+    read_on(rig, 3);
     int reads = 0;
     rig.way->nothing_at_once = [&] { return ++reads > 0; };
     for (int r = 0; r < 5; ++r) CHECK_FALSE(rig.read(20 * ms));
     CHECK(reads < 200'000);
     rig.way->nothing_at_once = nullptr;
-    read_frames(rig, 3);
+    read_on(rig, 3);
   }
 }
 
@@ -85,14 +85,14 @@ TEST_CASE("an eye that starts anew while it is configured is not blamed for a wr
     emulator.boot_ns = 0;  // it answers at once, and shows no configuration
     EyeRig rig(emulator);
     REQUIRE(rig.start());
-    read_frames(rig, 5);
+    read_on(rig, 5);
     int reboots = 4;
     rig.way->at_request = [&](Request request, const auto& done) {
       if (done && request == Request::set_config && reboots-- > 0) rig.inject({.kind = FaultKind::reboot});
     };
     rig.inject({.kind = FaultKind::stall_stream});
     const std::int64_t began_ns = rig.clock.now_ns();
-    read_frames(rig, 1);
+    read_on(rig, 1);
     CHECK(rig.clock.now_ns() - began_ns <= 400 * ms);
     CHECK(rig.source().failures()[Failure::rebooted] == 4);
     CHECK(rig.source().failures()[Failure::wrong_echo] == 0);
@@ -104,7 +104,7 @@ TEST_CASE("wrong echoes end it when there is no right one between them, and the 
     CAPTURE(bus->name);
     EyeRig rig(eye_settings(bus));
     REQUIRE(rig.start());
-    read_frames(rig, 5);
+    read_on(rig, 5);
     int halts = 3;
     rig.way->at_request = [&](Request request, const auto& done) {
       if (!done || request != Request::start || halts-- <= 0) return;
@@ -113,7 +113,7 @@ TEST_CASE("wrong echoes end it when there is no right one between them, and the 
     };
     rig.inject({.kind = FaultKind::wrong_echo});
     rig.inject({.kind = FaultKind::stall_stream});
-    read_frames(rig, 3);
+    read_on(rig, 3);
     CHECK(rig.source().failures()[Failure::wrong_echo] == 4);
 
     rig.inject({.kind = FaultKind::wrong_echo, .count = 3});
@@ -150,7 +150,7 @@ TEST_CASE("an eye that comes back with a description that is slow to come is giv
     settings.recovery_limit_ns = 2 * second;
     EyeRig rig(emulator, settings);
     REQUIRE(rig.start());
-    read_frames(rig, 3);
+    read_on(rig, 3);
     rig.way->at_request = [&](Request request, const auto&) {
       if (request == Request::get_desc) rig.clock.advance(95 * ms);
     };
@@ -172,11 +172,11 @@ TEST_CASE("an eye that starts anew says anew what it is, though nobody opens it 
     int opened = 0, described = 0;  // the rig's last words are counted, too
     EyeRig rig(emulator);
     REQUIRE(rig.start());
-    read_frames(rig, 3);
+    read_on(rig, 3);
     rig.way->at_open = [&] { ++opened; };
     rig.way->at_request = [&](Request request, const auto&) { described += request == Request::get_desc ? 1 : 0; };
     rig.inject({.kind = FaultKind::reboot});
-    read_frames(rig, 3);
+    read_on(rig, 3);
     CHECK(opened == 0);
     CHECK(described > 0);
   }

@@ -11,13 +11,14 @@
 #include "drivers/device/device_source.hpp"
 #include "tests/drivers/protocol/emulated_eye.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 using protocol::IlluminatorKind;
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
+using compueye::test::ms;
 
 /// A device with a lamp for each pixel of 2x3, and a display between them that is none of them, over a real driver.
 struct LitDevice {

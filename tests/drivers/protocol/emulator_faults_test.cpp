@@ -6,6 +6,7 @@
 
 #include "tests/drivers/protocol/emulated_eye.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 using namespace compueye::protocol;
@@ -15,7 +16,7 @@ using hal::ErrorCode;
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
+using compueye::test::ms;
 
 /// Runs `check` on both buses with an eye that has streamed a few frames.
 template <class Check>

@@ -16,13 +16,13 @@ using hal::DropReason;
 
 namespace {
 
-constexpr std::uint32_t config_id = 0x1234567;
-constexpr std::int64_t period_ns = 2'000'000;
+constexpr std::uint32_t hid_config_id = 0x1234567;
+constexpr std::int64_t hid_period_ns = 2'000'000;
 
 HidReportBytes report_of(std::uint64_t frame, int part, int channels, std::span<const std::int32_t> codes,
                          unsigned flags = hid_flag::time_ok) {
   HidReport report;
-  report.flags = static_cast<std::uint8_t>(flags | (config_id & 0xFU) << hid_flag::config_tag_shift);
+  report.flags = static_cast<std::uint8_t>(flags | (hid_config_id & 0xFU) << hid_flag::config_tag_shift);
   report.frame = static_cast<std::uint16_t>(frame);
   report.part = static_cast<std::uint8_t>(part);
   report.parts = static_cast<std::uint8_t>(hid_parts(channels));
@@ -85,7 +85,7 @@ TEST_CASE("HID: lost, repeated, damaged and reordered reports; every frame numbe
     const int parts = hid_parts(channels);
     HidAssembler assembler(channels, bits);
     assembler.begin_run();
-    assembler.begin_stream(config_id, period_ns);
+    assembler.begin_stream(hid_config_id, hid_period_ns);
     std::map<std::uint64_t, std::vector<std::int32_t>> sent;
     std::map<std::uint64_t, std::vector<bool>> came;
     std::uint64_t last_frame = 0;
@@ -146,7 +146,7 @@ TEST_CASE("HID: why frames are missing") {
   const auto gap_of = [&](std::uint64_t missing, unsigned flags, int damaged) {
     HidAssembler assembler(channels, hid_bits);
     assembler.begin_run();
-    assembler.begin_stream(config_id, period_ns);
+    assembler.begin_stream(hid_config_id, hid_period_ns);
     const auto frame = [&](std::uint64_t number, unsigned frame_flags) {
       for (int p = 0; p < 2; ++p) {
         assembler.push(report_of(number, p, channels, codes, frame_flags));
@@ -174,7 +174,7 @@ TEST_CASE("HID: what is not of this stream is counted and not used") {
   const std::vector<std::int32_t> codes(channels, 9);
   HidAssembler assembler(channels, 10);
   assembler.begin_run();
-  assembler.begin_stream(config_id, period_ns);
+  assembler.begin_stream(hid_config_id, hid_period_ns);
   assembler.push(report_of(0, 0, 37, codes));  // one part in all
   assembler.push(report_of(0, 0, channels, codes, 1U << hid_flag::config_tag_shift | 8U << hid_flag::config_tag_shift));
   assembler.push(HidReportBytes{});
@@ -197,7 +197,7 @@ TEST_CASE("HID: what is not of this stream is counted and not used") {
   REQUIRE(block);
   CHECK(block->valid[0] == 0);
   CHECK(block->valid[40] == 1);
-  CHECK(block->config_id == config_id);
+  CHECK(block->config_id == hid_config_id);
   assembler.push(report_of(0, 1, channels, codes));
   CHECK(assembler.counters().late_parts == 1);
   assembler.push(report_of(1, 1, channels, codes));
@@ -216,7 +216,7 @@ TEST_CASE("HID: times follow from STATUS, over the turn of the frame counter") {
   const std::vector<std::int32_t> codes(10, 1);
   HidAssembler assembler(10, hid_bits);
   assembler.begin_run();
-  assembler.begin_stream(config_id, period_ns);
+  assembler.begin_stream(hid_config_id, hid_period_ns);
   const auto time_of = [&](std::uint64_t frame) {
     assembler.push(report_of(frame, 0, 10, codes));
     const auto block = assembler.take();
@@ -226,22 +226,22 @@ TEST_CASE("HID: times follow from STATUS, over the turn of the frame counter") {
   };
   CHECK(time_of(0) == std::pair{std::int64_t{0}, false});
   assembler.set_time(Status{});  // no frame yet: tells nothing
-  CHECK(time_of(1) == std::pair{period_ns, false});
+  CHECK(time_of(1) == std::pair{hid_period_ns, false});
   Status status;
   status.frames = 6;
   status.last_t_ns = 1'000'000'000;
   assembler.set_time(status);
-  CHECK(time_of(2) == std::pair{std::int64_t{1'000'000'000 - 3 * period_ns}, true});
+  CHECK(time_of(2) == std::pair{std::int64_t{1'000'000'000 - 3 * hid_period_ns}, true});
   // The clock may have been set in a gap.
-  CHECK(time_of(4) == std::pair{std::int64_t{1'000'000'000 - period_ns}, false});
+  CHECK(time_of(4) == std::pair{std::int64_t{1'000'000'000 - hid_period_ns}, false});
   CHECK(time_of(5) == std::pair{std::int64_t{1'000'000'000}, true});
-  CHECK(time_of(30000).first == 1'000'000'000 + 29995 * period_ns);
-  CHECK(time_of(60000).first == 1'000'000'000 + 59995 * period_ns);
+  CHECK(time_of(30000).first == 1'000'000'000 + 29995 * hid_period_ns);
+  CHECK(time_of(60000).first == 1'000'000'000 + 59995 * hid_period_ns);
   status.frames = 70001;
   status.last_t_ns = 500'000'000'000;
   assembler.set_time(status);
-  CHECK(time_of(70001).first == 500'000'000'000 + period_ns);
-  CHECK(time_of(70002) == std::pair{500'000'000'000 + 2 * period_ns, true});
+  CHECK(time_of(70001).first == 500'000'000'000 + hid_period_ns);
+  CHECK(time_of(70002) == std::pair{500'000'000'000 + 2 * hid_period_ns, true});
   status.last_t_ns = 0x7FFFFFFFFFFFFFFFU;
   assembler.set_time(status);
   const auto overflown = time_of(70003);

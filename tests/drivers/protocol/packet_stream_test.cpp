@@ -13,9 +13,9 @@ using namespace compueye::protocol::tests;
 
 namespace {
 
-constexpr int channels = 60;
-constexpr PacketLimits limits{channels, 3 * channels};
-constexpr std::size_t longest_packet = least_packet_bytes + 3 * channels;
+constexpr int streamed_channels = 60;
+constexpr PacketLimits limits{streamed_channels, 3 * streamed_channels};
+constexpr std::size_t longest_packet = least_packet_bytes + 3 * streamed_channels;
 
 struct Got {
   FrameHeader header;
@@ -113,7 +113,7 @@ TEST_CASE("a good stream gives the same packets however it is cut into chunks") 
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     CAPTURE(seed);
     Random random(seed);
-    const SentStream stream = random_stream(random, 40, channels);
+    const SentStream stream = random_stream(random, 40, streamed_channels);
     PacketStream parser(limits);
     const auto got = parse(parser, random, stream.bytes, 1 + below(random, 2000));
     REQUIRE(got.size() == stream.packets.size());
@@ -133,7 +133,7 @@ TEST_CASE("damage anywhere: nothing false is accepted, every whole packet is fou
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     CAPTURE(seed);
     Random random(seed);
-    const SentStream stream = random_stream(random, 25, channels);
+    const SentStream stream = random_stream(random, 25, streamed_channels);
     Damaged damaged = undamaged(stream.bytes);
     for (std::size_t k = 1 + below(random, 6); k > 0; --k) damage(damaged, random);
     const std::vector<std::uint32_t> whole = untouched(stream, damaged);
@@ -165,7 +165,7 @@ TEST_CASE("damage anywhere: nothing false is accepted, every whole packet is fou
 
 TEST_CASE("one turned bit costs the packet that it is in and no other") {
   Random random(9);
-  const SentStream stream = random_stream(random, 3, channels);
+  const SentStream stream = random_stream(random, 3, streamed_channels);
   for (std::size_t bit = 0; bit < 8 * stream.bytes.size(); ++bit) {
     CAPTURE(bit);
     auto bytes = stream.bytes;
@@ -185,7 +185,7 @@ TEST_CASE("one turned bit costs the packet that it is in and no other") {
 
 TEST_CASE("a packet that lies whole in a chunk is not copied, one that does not is") {
   Random random(3);
-  const SentStream stream = random_stream(random, 2, channels);
+  const SentStream stream = random_stream(random, 2, streamed_channels);
   PacketStream parser(limits);
   parser.feed(stream.bytes);
   const auto whole = parser.next();
@@ -211,9 +211,9 @@ TEST_CASE("a packet that lies whole in a chunk is not copied, one that does not 
 TEST_CASE("what looks like packets and is none ends, within the work that is promised") {
   std::array<std::byte, header_bytes> header{};
   FrameHeader h;
-  h.n_ch = channels;
+  h.n_ch = streamed_channels;
   h.format = SampleFormat::i24;
-  h.payload_bytes = 3 * channels;
+  h.payload_bytes = 3 * streamed_channels;
   store(h, header);
   std::vector<std::byte> headers, magics;
   for (int k = 0; k < 500; ++k) {
@@ -268,7 +268,7 @@ TEST_CASE("hostile garbage is looked through in pieces of bounded work, and a pa
 
 TEST_CASE("an abandoned chunk and a reset count as skipped") {
   Random random(8);
-  const SentStream stream = random_stream(random, 4, channels);
+  const SentStream stream = random_stream(random, 4, streamed_channels);
   PacketStream parser(limits);
   parser.feed(stream.bytes);
   REQUIRE(parser.next());

@@ -14,7 +14,7 @@ using compueye::hal::ErrorCode;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Case {
+struct ArrayCase {
   std::string_view name;
   std::function<void(const TemporaryFolder&)> damage;
   ErrorCode code;
@@ -30,7 +30,7 @@ std::string good_npy() {
 }  // namespace
 
 TEST_CASE("samples that cannot be read are refused by place and value") {
-  const Case cases[] = {
+  const ArrayCase cases[] = {
       {"missing", [](const auto& f) { std::filesystem::remove(f / "y.npy"); }, ErrorCode::not_found, "y.npy", {}},
       {"a folder",
        [](const auto& f) {
@@ -122,7 +122,7 @@ TEST_CASE("samples that cannot be read are refused by place and value") {
        "y.npy",
        {"0", "1e+300", "float32"}},
   };
-  for (const Case& each : cases) {
+  for (const ArrayCase& each : cases) {
     CAPTURE(each.name);
     const ScratchProblem problem;
     each.damage(problem.folder());
@@ -131,7 +131,7 @@ TEST_CASE("samples that cannot be read are refused by place and value") {
 }
 
 TEST_CASE("weights and truths that do not fit are refused by place and value") {
-  const Case cases[] = {
+  const ArrayCase cases[] = {
       {"negative",
        [](const auto& f) {
          put_npy(f, "w.npy", {3}, {1, -0.5, 1});
@@ -177,13 +177,13 @@ TEST_CASE("weights and truths that do not fit are refused by place and value") {
        {"1", "nan"}},
       {"missing", [](const auto&) {}, ErrorCode::not_found, "w.npy", {}},
   };
-  for (const Case& each : cases) {
+  for (const ArrayCase& each : cases) {
     CAPTURE(each.name);
     const ScratchProblem problem;
     each.damage(problem.folder());
     check_refused(problem, std::string(scratch_command) + "--weights w.npy", each.code, each.place, each.named);
   }
-  const Case truths[] = {
+  const ArrayCase truths[] = {
       {"size",
        [](const auto& f) {
          put_npy(f, "t.npy", {1, 4}, {1, 2, 3, 4});
@@ -213,7 +213,7 @@ TEST_CASE("weights and truths that do not fit are refused by place and value") {
        "t.npy",
        {"(4,)", "(H, W)"}},
   };
-  for (const Case& each : truths) {
+  for (const ArrayCase& each : truths) {
     CAPTURE(each.name);
     const ScratchProblem problem;
     each.damage(problem.folder());

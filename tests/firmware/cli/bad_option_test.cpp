@@ -8,7 +8,7 @@ namespace {
 using namespace compueye::test;
 using compueye::hal::ErrorCode;
 
-struct Case {
+struct OptionCase {
   std::string_view arguments;
   std::string place;
   Named named;
@@ -20,7 +20,7 @@ const std::string files = "reconstruct --response A.npy --samples y.npy --size 2
 
 TEST_CASE("misspelt commands and options name the nearest that exists") {
   const ScratchProblem problem;
-  const Case cases[] = {
+  const OptionCase cases[] = {
       {"", "", {"--help"}},
       {"reconstrct", "reconstrct", {"reconstruct?"}},
       {"reconstruct --respnse A.npy", "--respnse", {"--response?", "--help"}},
@@ -33,7 +33,7 @@ TEST_CASE("misspelt commands and options name the nearest that exists") {
       {"inspect --as picture A.npy", "--as", {"picture", "auto", "array", "response"}},
   };
   const auto before = names_in(problem.folder().path());
-  for (const Case& each : cases) {
+  for (const OptionCase& each : cases) {
     CAPTURE(each.arguments);
     check_failed(run_compueye(each.arguments, problem.folder().path()), ErrorCode::usage, each.place, each.named);
   }
@@ -42,7 +42,7 @@ TEST_CASE("misspelt commands and options name the nearest that exists") {
 
 TEST_CASE("option values out of range name the value and what was expected") {
   const ScratchProblem problem;
-  const Case cases[] = {
+  const OptionCase cases[] = {
       {"", "--lambda or --sigma", {"--sigma", "--lambda", "--epsilon", "--rank"}},
       {"--lambda 1 --sigma 1", "--lambda", {"--sigma"}},
       {"--lambda -1", "--lambda", {"-1", "0"}},
@@ -95,7 +95,7 @@ TEST_CASE("option values out of range name the value and what was expected") {
       {"--lambda 0 --solver tikhonov", "--lambda", {"0", "tikhonov"}},
       {"--sigma 1 --png x.jpg", "--png", {"x.jpg", ".png"}},
   };
-  for (const Case& each : cases) {
+  for (const OptionCase& each : cases) {
     check_refused(problem, files + std::string(each.arguments), ErrorCode::usage, each.place, each.named);
   }
 }

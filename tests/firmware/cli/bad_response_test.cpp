@@ -11,9 +11,9 @@ namespace {
 using namespace compueye::test;
 using compueye::hal::ErrorCode;
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double nan_entry = std::numeric_limits<double>::quiet_NaN();
 
-struct Case {
+struct ResponseCase {
   std::string_view name;
   std::function<void(const TemporaryFolder&)> damage;
   ErrorCode code;
@@ -26,11 +26,11 @@ constexpr std::string_view banner = "%%MatrixMarket matrix coordinate real gener
 }  // namespace
 
 TEST_CASE("a dense response that cannot be used is refused by place and value") {
-  const Case cases[] = {
+  const ResponseCase cases[] = {
       {"missing", [](const auto& f) { std::filesystem::remove(f / "A.npy"); }, ErrorCode::not_found, "A.npy", {}},
       {"NaN",
        [](const auto& f) {
-         put_npy(f, "A.npy", {3, 4}, {1, 0, 0, 0, 0, 1, 0, 0, 0, not_a_number, 1, 0});
+         put_npy(f, "A.npy", {3, 4}, {1, 0, 0, 0, 0, 1, 0, 0, 0, nan_entry, 1, 0});
        },
        ErrorCode::out_of_range,
        "A.npy",
@@ -72,7 +72,7 @@ TEST_CASE("a dense response that cannot be used is refused by place and value") 
        "y.npy",
        {"3", "4"}},
   };
-  for (const Case& each : cases) {
+  for (const ResponseCase& each : cases) {
     CAPTURE(each.name);
     const ScratchProblem problem;
     each.damage(problem.folder());
@@ -115,12 +115,12 @@ TEST_CASE("a Matrix Market file that cannot be used is refused with its line") {
       {"3 4 1\n1 1 1.0\n", ErrorCode::bad_format, "A.mtx:1", {"%%MatrixMarket"}},
   };
   const std::string solve = "reconstruct --response A.mtx --samples y.npy --size 2x2 --sigma 1 --out x.npy";
-  for (const auto& [text, code, place, named] : cases) {
-    CAPTURE(text);
+  for (const auto& each : cases) {
+    CAPTURE(each.text);
     const ScratchProblem problem;
-    problem.folder().file("A.mtx", text);
-    check_refused(problem, solve, code, place, named);
-    check_refused(problem, "inspect A.mtx", code, place, named);
+    problem.folder().file("A.mtx", each.text);
+    check_refused(problem, solve, each.code, each.place, each.named);
+    check_refused(problem, "inspect A.mtx", each.code, each.place, each.named);
   }
 }
 

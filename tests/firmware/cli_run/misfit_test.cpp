@@ -12,13 +12,12 @@ TEST_CASE("a board that is not the recorded eye's is told, and its own is not") 
   CHECK(own["fit"]["frames"] == 6);
   CHECK(own["fit"]["misfits"] == 0);
   CHECK(own["fit"]["least_over_noise"].get<double>() < 1.5);
-  for (const auto& [before, after] :
-       {std::pair{"acceptance_angle_deg = 8", "acceptance_angle_deg = 8.5"},
-        std::pair{"distance_mm = 30", "distance_mm = 26"},
-        std::pair{"interommatidial_angle_deg = 1.5", "interommatidial_angle_deg = 1.4"}}) {
-    CAPTURE(after);
+  for (const auto& change : {std::pair{"acceptance_angle_deg = 8", "acceptance_angle_deg = 8.5"},
+                             std::pair{"distance_mm = 30", "distance_mm = 26"},
+                             std::pair{"interommatidial_angle_deg = 1.5", "interommatidial_angle_deg = 1.4"}}) {
+    CAPTURE(change.second);
     const CopiedBoard other;
-    other.change(before, after);
+    other.change(change.first, change.second);
     const auto told = other.run_json({"--replay", file.string()});
     CHECK(told["fit"]["misfits"] == told["fit"]["frames"]);
     CHECK(told["fit"]["least_over_noise"].get<double>() > 3.0);

@@ -56,7 +56,9 @@ TEST_CASE("pareto measures curves that fall as theory says, a front, and files t
   REQUIRE(curve.size() >= 4);
   CHECK(curve.count(200) == 1);  // the board's own
   const Json *before = nullptr, &converged = curve.rbegin()->second;
-  for (const auto& [iterations, point] : curve) {
+  for (const auto& each : curve) {
+    const int iterations = each.first;
+    const Json& point = each.second;
     for (std::size_t level = 0; level < 3 && before != nullptr; ++level) {
       CAPTURE(iterations);
       CAPTURE(level);

@@ -38,7 +38,7 @@ recon::Response another(const firmware::Board& board, std::uint64_t seed) {
   return calib::plausible_response(board.eye, board.object, {}, seed).value();
 }
 
-double nmse(const Json& json) {
+double nmse_of(const Json& json) {
   return json["quality"]["nmse"].get<double>();
 }
 
@@ -110,10 +110,10 @@ TEST_CASE("gains, dark levels and a linearity that were measured make the pictur
   const auto file = board.outside("F.eye");
   store_estimate(file, made, estimate, drawn.select_rows(all, gains));
 
-  const double by_drawing = nmse(board.run_json(some_frames));
+  const double by_drawing = nmse_of(board.run_json(some_frames));
   const Json measured = board.run_json(with_eye(file));
   CHECK(by_drawing > 0.1);
-  CHECK(nmse(measured) < 1e-3);
+  CHECK(nmse_of(measured) < 1e-3);
   CHECK(measured["measured"]["dark_levels"] == true);
   CHECK(measured["measured"]["linearity_points"] == 65);
   // Each of the three is needed.
@@ -121,13 +121,13 @@ TEST_CASE("gains, dark levels and a linearity that were measured make the pictur
   bowed.linearity_codes.clear();
   bowed.linearity_values.clear();
   store_estimate(file, made, bowed, drawn.select_rows(all, gains));
-  CHECK(nmse(board.run_json(with_eye(file))) > 10.0 * nmse(measured));
+  CHECK(nmse_of(board.run_json(with_eye(file))) > 10.0 * nmse_of(measured));
   calib::Estimate lit = estimate;
   lit.dark_level_lsb.clear();
   store_estimate(file, made, lit, drawn.select_rows(all, gains));
-  CHECK(nmse(board.run_json(with_eye(file))) > 10.0 * nmse(measured));
+  CHECK(nmse_of(board.run_json(with_eye(file))) > 10.0 * nmse_of(measured));
   store_estimate(file, made, estimate, drawn);
-  CHECK(nmse(board.run_json(with_eye(file))) > 10.0 * nmse(measured));
+  CHECK(nmse_of(board.run_json(with_eye(file))) > 10.0 * nmse_of(measured));
 }
 
 TEST_CASE("rows of channels that are not good never reach the solver, and good ones with the same rows do") {
@@ -152,7 +152,7 @@ TEST_CASE("rows of channels that are not good never reach the solver, and good o
   store_estimate(file, made, estimate, rows);
   // Five are more than a frame of 64 may lack: they are no part of the eye.
   const Json masked = board.run_json(with_eye(file));
-  CHECK(nmse(masked) < 1e-3);
+  CHECK(nmse_of(masked) < 1e-3);
   CHECK(masked["eye"]["masked_ommatidia"] == 5);
   CHECK(masked["eye"]["blind_ommatidia"] == 0);
   CHECK(masked["last"]["channels_used"] == 59);
@@ -162,7 +162,7 @@ TEST_CASE("rows of channels that are not good never reach the solver, and good o
   CHECK(contains(told.out, "estimate 1 (by hand) of eye 'SIM-8X8' at 30 mm"));
   check_no_key_left(told.out);
   store_estimate(file, made, good_estimate(made), rows);
-  CHECK(nmse(board.run_json(with_eye(file, {"--frames", "3", "--lossless", "--find-dead", "off"}))) > 0.3);
+  CHECK(nmse_of(board.run_json(with_eye(file, {"--frames", "3", "--lossless", "--find-dead", "off"}))) > 0.3);
 }
 
 TEST_CASE("a factor is kept for the rows that it is of, not for the drawing") {
@@ -194,8 +194,8 @@ TEST_CASE("the board may name its eye file, and a command line another one or no
         board.outside("other.eye").string());
   const Json none = board.run_json(with_eye(""));
   CHECK(none["measured"].is_null());
-  CHECK(nmse(none) < 1e-3);
-  CHECK(nmse(own) > 10.0 * nmse(none));
+  CHECK(nmse_of(none) < 1e-3);
+  CHECK(nmse_of(own) > 10.0 * nmse_of(none));
   std::filesystem::remove(board.path() / "eyes" / "own.eye");
   check_refused(board.run_arguments(some_frames), ErrorCode::not_found, (board.path() / "eyes/own.eye").string(), {});
 }

@@ -66,12 +66,14 @@ TEST_CASE("stored points that nothing can run cost a note, and the deadline is f
   static_cast<void>(pareto_json(board, short_sweep()));
   nlohmann::ordered_json measured;
   change_points(board, [&](auto& json) { measured = json; });
-  for (const auto& [key, value] : {std::pair<std::string, Json>{"iterations", 2'000'000'000},
-                                   {"threads", 0},
-                                   {"basis", "tv"},  // which omp has not
-                                   {"p999_ms", -1.0}}) {
+  for (const auto& wrong : {std::pair<std::string, Json>{"iterations", 2'000'000'000},
+                            {"threads", 0},
+                            {"basis", "tv"},  // which omp has not
+                            {"p999_ms", -1.0}}) {
+    const std::string& key = wrong.first;
+    const Json& value = wrong.second;
     CAPTURE(key);
-    change_points(board, [&, key = key, value = value](auto& json) {
+    change_points(board, [&](auto& json) {
       json["processor_share"] = 1.0;
       for (auto& point : json["points"]) {
         point[key] = value;

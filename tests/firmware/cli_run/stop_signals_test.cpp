@@ -89,7 +89,7 @@ Ended ended_by_second(Program& program, int first, int second) {
   return program.wait();
 }
 
-std::uintmax_t size_of(const std::filesystem::path& file) {
+std::uintmax_t bytes_in(const std::filesystem::path& file) {
   std::error_code error;
   const auto size = std::filesystem::file_size(file, error);
   return error ? 0 : size;
@@ -105,8 +105,8 @@ TEST_CASE("a terminal that takes nothing holds neither the frames nor the end of
     const auto file = board.outside("eye.rec");
     Program program(board.run_arguments({"--frames", "0", "--record", file.string()}), terminal.fd(), terminal.fd());
     REQUIRE(comes_true(program, [&] { return terminal.full(); }));
-    const auto at = size_of(file);
-    CHECK(comes_true(program, [&] { return size_of(file) > at + 10'000; }));
+    const auto at = bytes_in(file);
+    CHECK(comes_true(program, [&] { return bytes_in(file) > at + 10'000; }));
     program.signal(number);
     const Ended ended = program.wait();
     CHECK_FALSE(ended.timed_out);
@@ -154,7 +154,7 @@ TEST_CASE("a reader of the pictures that sleeps does not hold the run, whose fil
   ::fcntl(pipe[1], F_SETPIPE_SZ, pipe_bytes);
   const auto file = board.outside("eye.rec");
   Program program(board.run_arguments({"--frames", "0", "--show", "--record", file.string()}), pipe[1]);
-  CHECK(comes_true(program, [&] { return size_of(file) > 20'000; }));
+  CHECK(comes_true(program, [&] { return bytes_in(file) > 20'000; }));
   program.signal(SIGTERM);
   const Ended ended = program.wait();
   CHECK_FALSE(ended.timed_out);

@@ -3,12 +3,14 @@
 #include <vector>
 
 #include "firmware/operating_points/point_ladder.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye::firmware;
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000, second = 1000 * ms;
+using compueye::test::ms;
+using compueye::test::second;
 
 /// Frames every `period`, late on a rung below `fast_enough` while `loaded`.
 struct Stream {

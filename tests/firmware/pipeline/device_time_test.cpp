@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <random>
 
+#include "tests/hal/units.hpp"
+
 using namespace compueye::firmware;
 using compueye::hal::SampleBlock;
 
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
+using compueye::test::ms;
 constexpr std::int64_t us = 1000;
 
 SampleBlock at(std::int64_t t_ns, bool time_ok = true) {

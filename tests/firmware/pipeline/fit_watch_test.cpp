@@ -10,16 +10,19 @@ using namespace compueye;
 
 namespace {
 
-constexpr int side = 4, channels = side * side;
+constexpr int watched_side = 4, watched_channels = watched_side * watched_side;
 
 /// Every ommatidium sees one pixel.
 recon::Reconstructor clear_eye() {
-  std::vector<double> values(channels * channels, 0.0);
-  for (std::size_t m = 0; m < channels; ++m) values[m * channels + m] = 1.0;
+  std::vector<double> values(watched_channels * watched_channels, 0.0);
+  for (std::size_t m = 0; m < watched_channels; ++m) values[m * watched_channels + m] = 1.0;
   recon::Objective objective;
   objective.constraint = recon::ConstraintKind::box;
   objective.lambda = 1e-3;
-  const auto response = recon::Response::from_dense(channels, channels, values).value().with_image(side, side).value();
+  const auto response = recon::Response::from_dense(watched_channels, watched_channels, values)
+                            .value()
+                            .with_image(watched_side, watched_side)
+                            .value();
   return recon::Reconstructor::create(response, objective, {}).value();
 }
 
@@ -35,10 +38,10 @@ TEST_CASE("frames 1, 2, 4 and every 32nd are looked at, the worst is kept and th
   firmware::ReconstructorSolver solver(reconstructor);
   Counting next;
   firmware::FitWatch watch(reconstructor, 0.01, next);
-  std::vector<float> x(channels);
-  const std::vector<float> weights(channels, 1.0F);
+  std::vector<float> x(watched_channels);
+  const std::vector<float> weights(watched_channels, 1.0F);
   const auto publish = [&](std::uint64_t number, float level) {
-    const std::vector<float> y(channels, level);
+    const std::vector<float> y(watched_channels, level);
     const recon::FrameInfo info = solver.solve(y, weights, x);
     hal::Frame frame;
     frame.pixels = x;

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "tests/firmware/pipeline/rig.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye::firmware;
 using namespace compueye::firmware::tests;
@@ -38,7 +39,7 @@ class Watcher final : public FrameObserver {
   Progress& published_;
 };
 
-constexpr std::int64_t ms = 1'000'000;
+using compueye::test::ms;
 
 }  // namespace
 

@@ -1,4 +1,5 @@
 #include "tests/hil/level1/fault_scripts.hpp"
+#include "tests/hal/units.hpp"
 
 namespace compueye::hil {
 namespace {
@@ -7,8 +8,8 @@ using protocol::EmulatorFault;
 using protocol::FaultKind;
 using Faults = std::vector<EmulatorFault>;
 
-constexpr std::int64_t ms = 1'000'000;
-constexpr std::int64_t second = 1000 * ms;
+using compueye::test::ms;
+using compueye::test::second;
 
 /// Some parts of frames, of the last of them not all.
 Faults damaged(FaultKind kind, const FaultMoment& m) {

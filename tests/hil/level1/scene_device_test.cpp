@@ -12,12 +12,13 @@
 #include "hal/clock.hpp"
 #include "sim/pictures/built_in_scenes.hpp"
 #include "sim/simulated_eye.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 
 namespace {
 
-constexpr std::int64_t second = 1'000'000'000;
+using compueye::test::second;
 
 sim::SimulatedEyeSettings moving_eye(int bits) {
   sim::SimulatedEyeSettings settings;

@@ -15,6 +15,7 @@
 #include "hal/clock.hpp"
 #include "tests/drivers/protocol/wire_samples.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/units.hpp"
 #include "tests/hil/level2/hid_port.hpp"
 #include "tests/hil/level2/testbed.hpp"
 #include "tests/memory/allocation_counter.hpp"
@@ -100,7 +101,7 @@ struct Bench {
     port.plug();
     wait_for_boot(port);
   }
-  [[nodiscard]] std::int64_t in_ms(std::int64_t ms) const { return clock.now_ns() + ms * 1'000'000; }
+  [[nodiscard]] std::int64_t in_ms(std::int64_t duration) const { return clock.now_ns() + duration * test::ms; }
   [[nodiscard]] hal::Result<std::size_t> read(std::int64_t within_ms) {
     return transport.read(chunk, in_ms(within_ms));
   }

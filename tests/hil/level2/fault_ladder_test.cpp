@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "drivers/device/device_source.hpp"
+#include "tests/hal/units.hpp"
 #include "tests/hil/fault_table.hpp"
 #include "tests/hil/level1/fault_scripts.hpp"
 #include "tests/hil/level2/benches.hpp"
@@ -15,7 +16,8 @@
 namespace compueye::hil {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000, second = 1000 * ms;
+using compueye::test::ms;
+using compueye::test::second;
 constexpr std::int64_t silence_ns = second, usual_silence_ns = 50 * ms;
 constexpr std::int64_t period_ns = 10 * ms;  // as DeviceSettings have it
 constexpr std::uint64_t calm_frames = 10;

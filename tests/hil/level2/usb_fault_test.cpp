@@ -13,7 +13,7 @@ namespace {
 
 using protocol::FaultKind;
 
-constexpr std::int64_t quiet_ns = 2'000'000'000;
+constexpr std::int64_t frozen_ns = 2'000'000'000;
 
 /// Frames come until one lies after everything that went wrong; all of them are right where they are valid. A busy
 /// reader first meets what was made before it: with `loses` until a frame is lost.
@@ -31,14 +31,14 @@ TEST_CASE("usb: 200 ms without data are a timeout, and the stream goes on withou
   UsbBench bench(testbed, eye("CE-1"));
   REQUIRE(bench.host.start());
   bench.check_frames(0, 10);
-  bench.port.cable.inject({.kind = FaultKind::silence, .duration_ns = quiet_ns});
+  bench.port.cable.inject({.kind = FaultKind::silence, .duration_ns = frozen_ns});
   const std::int64_t begin_ns = bench.clock.now_ns();
   hal::Result<std::size_t> got = std::size_t{0};
   while (got) got = bench.read(200);  // what was under way still comes
   CHECK(got.error().code == hal::ErrorCode::timeout);
   CHECK((got.error().place + got.error().sentence).empty());  // without words: no allocation
   CHECK(bench.clock.now_ns() - begin_ns >= 200'000'000);
-  bench.port.cable.pass(quiet_ns);
+  bench.port.cable.pass(frozen_ns);
   bench.check_frames(10, 50);
   CHECK(bench.host.account().total_dropped() == 0);
 }

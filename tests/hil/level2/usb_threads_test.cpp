@@ -15,6 +15,7 @@
 #include "tests/drivers/protocol/wire_samples.hpp"
 #include "tests/hal/error_check.hpp"
 #include "tests/hal/no_threads.hpp"
+#include "tests/hal/units.hpp"
 #include "tests/hil/level2/testbed.hpp"
 #include "tests/hil/usbfs_shim.hpp"
 
@@ -54,7 +55,7 @@ class ShimmedEye {
   ShimmedEye(const ShimmedEye&) = delete;
   ShimmedEye& operator=(const ShimmedEye&) = delete;
   void at_reset(std::function<void()> what) { eye_.at_reset = std::move(what); }
-  [[nodiscard]] std::int64_t in_ms(std::int64_t ms) const { return clock.now_ns() + ms * 1'000'000; }
+  [[nodiscard]] std::int64_t in_ms(std::int64_t duration) const { return clock.now_ns() + duration * test::ms; }
 
  private:
   Testbed testbed_;

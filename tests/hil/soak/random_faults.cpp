@@ -1,4 +1,5 @@
 #include "tests/hil/soak/random_faults.hpp"
+#include "tests/hal/units.hpp"
 
 #include <algorithm>
 
@@ -8,7 +9,7 @@ namespace {
 using protocol::EmulatorFault;
 using protocol::FaultKind;
 
-constexpr std::int64_t ms = 1'000'000;
+using compueye::test::ms;
 
 }  // namespace
 

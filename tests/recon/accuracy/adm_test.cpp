@@ -64,20 +64,20 @@ TEST_CASE("adm with epsilon: the bound holds and the l1 norm is the least, for r
   Random random(41);
   int compared = 0;
   for (const SolverProblem& problem : solver_problems()) {
-    for (const auto& [basis, constraint] : {std::pair{BasisKind::identity, ConstraintKind::none},
-                                            {BasisKind::identity, ConstraintKind::nonnegative},
-                                            {BasisKind::identity, ConstraintKind::box},
-                                            {BasisKind::dct, ConstraintKind::none},
-                                            {BasisKind::haar, ConstraintKind::none},
-                                            {BasisKind::dft, ConstraintKind::none}}) {
+    for (const auto& each : {std::pair{BasisKind::identity, ConstraintKind::none},
+                             {BasisKind::identity, ConstraintKind::nonnegative},
+                             {BasisKind::identity, ConstraintKind::box},
+                             {BasisKind::dct, ConstraintKind::none},
+                             {BasisKind::haar, ConstraintKind::none},
+                             {BasisKind::dft, ConstraintKind::none}}) {
       for (const bool weighted : {false, true}) {
         CAPTURE(problem.name);
-        CAPTURE(static_cast<int>(basis));
-        CAPTURE(static_cast<int>(constraint));
+        CAPTURE(static_cast<int>(each.first));
+        CAPTURE(static_cast<int>(each.second));
         CAPTURE(weighted);
         recon::Objective objective;
-        objective.basis = basis;
-        objective.constraint = constraint;
+        objective.basis = each.first;
+        objective.constraint = each.second;
         objective.lambda = 0.1;
         const Bounded b = bounded_problem(problem, objective, random, weighted);
         objective.epsilon = b.epsilon;
@@ -94,10 +94,10 @@ TEST_CASE("adm with epsilon: the bound holds and the l1 norm is the least, for r
         const bool proven = frame.info.duality_gap <= 1e-3 * frame.info.objective;  // negative with a box: has none
         CHECK((frame.info.health == recon::Health::converged) == proven);
         CHECK(residual_of(problem, b, x) <= b.epsilon * (1.0 + 1e-3));
-        CHECK(magnitudes(problem, basis, x) == doctest::Approx(b.least).epsilon(1e-3));
-        CHECK(frame.info.objective == doctest::Approx(magnitudes(problem, basis, x)).epsilon(1e-5));
+        CHECK(magnitudes(problem, each.first, x) == doctest::Approx(b.least).epsilon(1e-3));
+        CHECK(frame.info.objective == doctest::Approx(magnitudes(problem, each.first, x)).epsilon(1e-5));
         CHECK(frame.info.residual == doctest::Approx(b.epsilon).epsilon(1e-3));
-        if (constraint == ConstraintKind::box) continue;
+        if (each.second == ConstraintKind::box) continue;
         CHECK(frame.info.duality_gap >= 0.0);
         CHECK(frame.info.duality_gap <= 1e-2 * b.least);
       }

@@ -26,7 +26,7 @@ Plan plan_of(SolverKind solver, double rho = 0.0) {
   return plan;
 }
 
-Objective objective_of(BasisKind basis, double lambda) {
+Objective l1_objective(BasisKind basis, double lambda) {
   Objective objective;
   objective.basis = basis;
   objective.constraint = ConstraintKind::nonnegative;
@@ -51,7 +51,7 @@ double mean_error(const Response& a, double rho) {
     for (double& v : y) v += sigma * random.normal();
     Plan plan = plan_of(solver_named("admm"), rho);
     plan.iterations = 22;
-    const auto solver = Reconstructor::create(a, objective_of(BasisKind::identity, 4.0 * sigma), plan);
+    const auto solver = Reconstructor::create(a, l1_objective(BasisKind::identity, 4.0 * sigma), plan);
     REQUIRE(solver.has_value());
     const SolvedFrame frame = solve_frame(*solver, to_float(y));
     double error = 0.0, size = 0.0;
@@ -68,7 +68,7 @@ double mean_error(const Response& a, double rho) {
 
 TEST_CASE("admm in pixels goes down from rho, back to it, and ends there") {
   const PenaltyLevels dip =
-      penalty_levels(objective_of(BasisKind::identity, 0.1), plan_of(solver_named("admm"), 3.0), true, 64, true);
+      penalty_levels(l1_objective(BasisKind::identity, 0.1), plan_of(solver_named("admm"), 3.0), true, 64, true);
   const auto least = std::min_element(dip.penalties.begin(), dip.penalties.end());
   CHECK(*least == doctest::Approx(1.0));
   CHECK(dip.penalties.front() == doctest::Approx(4.0));
@@ -79,7 +79,7 @@ TEST_CASE("admm in pixels goes down from rho, back to it, and ends there") {
 
 TEST_CASE("pdhg rises from rho to twice rho where lambda leaves it time") {
   const auto levels = [](double lambda, BasisKind basis = BasisKind::dct, int order = many_rows) {
-    return penalty_levels(objective_of(basis, lambda), plan_of(solver_named("pdhg"), 7.0), true, order, true).penalties;
+    return penalty_levels(l1_objective(basis, lambda), plan_of(solver_named("pdhg"), 7.0), true, order, true).penalties;
   };
   for (const double lambda : {0.0, 0.2, 2.0}) {
     const auto rise = levels(lambda);
@@ -96,7 +96,7 @@ TEST_CASE("pdhg rises from rho to twice rho where lambda leaves it time") {
 
 TEST_CASE("pdhg comes down from above rho where no symmetry is left") {
   const auto levels = [](double lambda) {
-    return penalty_levels(objective_of(BasisKind::dct, lambda), plan_of(solver_named("pdhg"), 7.0), true, many_rows,
+    return penalty_levels(l1_objective(BasisKind::dct, lambda), plan_of(solver_named("pdhg"), 7.0), true, many_rows,
                           false)
         .penalties;
   };
@@ -113,7 +113,7 @@ TEST_CASE("a rho that was asked for stays") {
   for (const SolverKind solver : {solver_named("admm"), solver_named("pdhg")}) {
     for (const BasisKind basis : {BasisKind::identity, BasisKind::dct}) {
       const PenaltyLevels levels =
-          penalty_levels(objective_of(basis, 0.1), plan_of(solver, 5.0), false, many_rows, true);
+          penalty_levels(l1_objective(basis, 0.1), plan_of(solver, 5.0), false, many_rows, true);
       CHECK(levels.penalties == std::vector<double>{5.0});
     }
   }
@@ -121,7 +121,7 @@ TEST_CASE("a rho that was asked for stays") {
 
 TEST_CASE("the schedule follows the unit of the samples") {
   const auto rise = [](double unit) {
-    return penalty_levels(objective_of(BasisKind::dct, 3.0 * unit), plan_of(solver_named("pdhg"), 7.0 * unit), true,
+    return penalty_levels(l1_objective(BasisKind::dct, 3.0 * unit), plan_of(solver_named("pdhg"), 7.0 * unit), true,
                           many_rows, true)
         .penalties;
   };
