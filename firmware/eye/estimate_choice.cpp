@@ -68,4 +68,10 @@ Result<EstimateChoice> choose_estimate(const EyeFile& file, std::optional<double
   return EstimateChoice{far->second, near->second};
 }
 
+Result<std::optional<DistanceRange>> interpolated_range(const EyeFile& file) {
+  const auto kept = TRY(kept_rows(file, TRY(file.estimates())));
+  if (kept.size() < 2) return std::optional<DistanceRange>();
+  return std::optional(DistanceRange{kept.begin()->first, kept.rbegin()->first});
+}
+
 }  // namespace compueye::firmware

@@ -22,4 +22,10 @@ struct EstimateChoice {
 [[nodiscard]] hal::Result<EstimateChoice> choose_estimate(const calib::EyeFile& file,
                                                           std::optional<double> distance_mm);
 
+/// Between which distances there are rows at any. Nothing: fewer than two keep what makes theirs.
+struct DistanceRange {
+  double from_mm = 0.0, to_mm = 0.0;
+};
+[[nodiscard]] hal::Result<std::optional<DistanceRange>> interpolated_range(const calib::EyeFile& file);
+
 }  // namespace compueye::firmware
