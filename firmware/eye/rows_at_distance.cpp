@@ -40,7 +40,7 @@ Result<std::string> configuration(const EyeFile& file, const Estimate& estimate)
     if (session.id != estimate.sessions.front()) continue;
     text = session.begun.configuration;
     const std::size_t line = text.find("object.distance_mm = ");
-    if (line != std::string::npos) text.erase(line, text.find('\n', line) - line);
+    if (line != std::string::npos) text.erase(line, text.find('\n', line) - line + 1);
     text += fmt::format("\nfirmware {}, {} bits", session.begun.firmware, session.begun.bits);
   }
   return text;
