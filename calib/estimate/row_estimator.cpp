@@ -15,7 +15,6 @@ namespace {
 constexpr std::size_t most_tried = 3;
 /// Of the roughness of a field at its knots, rms: what coverage of simulated eyes asks for (docs/calibration.md).
 constexpr double hidden_share = 0.02, hidden_at_px = 4.0;
-constexpr double least_entry = 1e-3;
 /// Rows whose errors are told by kind, about: it costs as much as their entries.
 constexpr int most_telling = 512;
 

@@ -23,6 +23,19 @@ double halo_half_rad(const hal::EyeGeometry& eye, double half_rad) noexcept {
   return half_rad * std::clamp(ratio, least_halo, most_halo);
 }
 
+}  // namespace
+
+SplinesAt splines_at(double px, double first_px, double pitch_px, int knots) noexcept {
+  const double at = (px - first_px) / pitch_px;
+  SplinesAt found;
+  found.first = std::max(static_cast<int>(std::floor(at)) - 1, 0);
+  const int end = std::min(static_cast<int>(std::floor(at)) + 3, knots);
+  for (int knot = found.first; knot < end; ++knot) {
+    found.value[static_cast<std::size_t>(found.count++)] = spline(at - knot);
+  }
+  return found;
+}
+
 double field_at(const std::vector<float>& field, const KnotGrid& grid, const SplinesAt& down,
                 const SplinesAt& across) noexcept {
   double sum = 0.0;
@@ -36,19 +49,6 @@ double field_at(const std::vector<float>& field, const KnotGrid& grid, const Spl
     sum += down.value[static_cast<std::size_t>(u)] * along;
   }
   return sum;
-}
-
-}  // namespace
-
-SplinesAt splines_at(double px, double first_px, double pitch_px, int knots) noexcept {
-  const double at = (px - first_px) / pitch_px;
-  SplinesAt found;
-  found.first = std::max(static_cast<int>(std::floor(at)) - 1, 0);
-  const int end = std::min(static_cast<int>(std::floor(at)) + 3, knots);
-  for (int knot = found.first; knot < end; ++knot) {
-    found.value[static_cast<std::size_t>(found.count++)] = spline(at - knot);
-  }
-  return found;
 }
 
 KnotGrid KnotGrid::over(const std::vector<std::int32_t>& support, int plane_cols, double pitch_px,

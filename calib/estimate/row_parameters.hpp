@@ -32,6 +32,10 @@ struct SplinesAt {
 };
 [[nodiscard]] SplinesAt splines_at(double px, double first_px, double pitch_px, int knots) noexcept;
 
+/// A knot each of `field`, at the pixel or between pixels whose splines these are.
+[[nodiscard]] double field_at(const std::vector<float>& field, const KnotGrid& grid, const SplinesAt& down,
+                              const SplinesAt& across) noexcept;
+
 /// What the residual is made of.
 enum class Field {
   sensitivity,  ///< multiplies the cone beside 1: dust, uneven sensitivity
@@ -56,6 +60,9 @@ struct RowSupport {
 };
 
 [[nodiscard]] RowSupport support_of(SoftCone& model, int i, int k, const ConeParameters& cone, const PlaneError& plane);
+
+/// Entries that are not more than this are left out of a row.
+inline constexpr double least_entry = 1e-3;
 
 /// The entries over `support.pixels`: gain cone (1 + sensitivity) + edge d gain cone / d ln half angle + halo, at least
 /// 0.

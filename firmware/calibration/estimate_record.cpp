@@ -1,11 +1,11 @@
 #include "firmware/calibration/estimate_record.hpp"
 
 #include <array>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "firmware/eye/stored_rows.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -13,8 +13,6 @@ namespace {
 
 using calib::ChannelNoise;
 using calib::NamedColumn;
-using calib::NamedNumber;
-using calib::RowEstimate;
 
 double told(const std::optional<double>& figure) noexcept {
   return figure.value_or(std::numeric_limits<double>::quiet_NaN());
@@ -34,44 +32,6 @@ constexpr std::array<NoiseFigure, 7> noise_figures{{
     {"linearity_error", &ChannelNoise::linearity_error},
     {"dynamic_range", &ChannelNoise::dynamic_range},
 }};
-
-/// The parameters of a row, by name.
-struct RowFigure {
-  const char* name;
-  double (*of)(const RowEstimate&);
-};
-const std::array<RowFigure, 7> row_figures{{
-    {"tilt_one_rad", [](const RowEstimate& r) { return r.parameters.cone.tilt_one_rad; }},
-    {"tilt_other_rad", [](const RowEstimate& r) { return r.parameters.cone.tilt_other_rad; }},
-    {"half_angle_rad", [](const RowEstimate& r) { return r.parameters.cone.half_angle_rad; }},
-    {"order", [](const RowEstimate& r) { return r.parameters.cone.order; }},
-    {"gain", [](const RowEstimate& r) { return r.parameters.cone.gain; }},
-    {"held_out_chi2", [](const RowEstimate& r) { return r.held_out_chi2; }},
-    {"inflation", [](const RowEstimate& r) { return r.inflation; }},
-}};
-
-std::vector<NamedNumber> shared_of(const calib::ResponseEstimate& e) {
-  return {{"plane_distance_error_mm", e.plane.distance_mm},
-          {"plane_distance_error_sigma_mm", e.plane_sigma.distance_mm},
-          {"plane_lean_rad", e.plane.lean_rad},
-          {"plane_tilt_rad", e.plane.tilt_rad},
-          {"display_gamma", e.gamma},
-          {"display_gamma_sigma", e.gamma_sigma},
-          {"display_black_level", e.black_level},
-          {"display_black_level_sigma", e.black_level_sigma}};
-}
-
-void add_rows(const calib::ResponseEstimate& e, calib::Estimate& record) {
-  for (const RowFigure& figure : row_figures) {
-    NamedColumn& column = record.parameters.emplace_back(NamedColumn{figure.name, {}});
-    for (const RowEstimate& row : e.rows) column.values.push_back(figure.of(row));
-  }
-  for (const RowEstimate& row : e.rows) {
-    record.status.push_back(row.status);
-    record.chi2.push_back(row.held_out_chi2);
-  }
-  record.dark_level_lsb = e.dark_lsb;
-}
 
 void add_noise(const calib::SensorNoise& sensor, calib::Estimate& record) {
   for (const NoiseFigure& figure : noise_figures) {
@@ -95,7 +55,6 @@ hal::Result<std::int64_t> store(const calib::ResponseEstimate& estimate,
   record.method = origin.method;
   record.plan = origin.plan;
   record.distance_mm = origin.distance_mm;
-  record.shared = shared_of(estimate);
   record.kappas = origin.kappas;
   add_rows(estimate, record);
   add_noise(sensor, record);
@@ -104,7 +63,7 @@ hal::Result<std::int64_t> store(const calib::ResponseEstimate& estimate,
     record.linearity_values.insert(record.linearity_values.end(), table.straight.begin(), table.straight.end());
   }
   std::vector<float> sigma;
-  for (const RowEstimate& row : estimate.rows) {
+  for (const calib::RowEstimate& row : estimate.rows) {
     if (row.status == hal::ChannelStatus::good) sigma.insert(sigma.end(), row.sigmas.begin(), row.sigmas.end());
   }
   return file.store_estimate(record, TRY(estimate.response(file.eye().plane)), sigma);

@@ -17,7 +17,7 @@
 #include "firmware/calibration/calibration_run.hpp"
 #include "firmware/calibration/plan_file.hpp"
 #include "firmware/calibration/session_captures.hpp"
-#include "firmware/eye/measured_eye.hpp"
+#include "firmware/eye/estimate_choice.hpp"
 #include "hal/channel_status.hpp"
 #include "hal/try.hpp"
 

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <string_view>
 #include <utility>
 
 #include "calib/eye_file/eye_file.hpp"
 #include "calib/median.hpp"
+#include "firmware/eye/estimate_choice.hpp"
+#include "firmware/eye/rows_at_distance.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -65,26 +66,6 @@ Result<void> same_serial(const std::string& file, const std::string& measured, c
                           visible_text(measured), visible_text(serial)));
 }
 
-Result<calib::StoredEstimate> newest_of(const calib::EyeFile& file, std::optional<double> distance_mm) {
-  const std::vector<calib::StoredEstimate> all = TRY(file.estimates());
-  std::set<double> distances;
-  const calib::StoredEstimate* newest = nullptr;
-  for (const calib::StoredEstimate& each : all) {
-    distances.insert(each.distance_mm);
-    // A little more, so that a distance of as many decimals as people type is told from the next one rightly.
-    const bool fits = !distance_mm || std::abs(each.distance_mm - *distance_mm) <= same_distance_mm * (1.0 + 1e-9);
-    if (fits) newest = &each;
-  }
-  if (newest != nullptr) return *newest;
-  if (all.empty()) {
-    return fail(ErrorCode::not_found, file.path(),
-                "has no estimate of a response yet; calibrate the eye, or import one");
-  }
-  return fail(ErrorCode::mismatch, file.path(),
-              fmt::format("has no estimate at {} mm, only at {} mm; state that distance, or calibrate at this one",
-                          *distance_mm, fmt::join(distances, ", ")));
-}
-
 /// The noise that errors of the rows add to a sample.
 double row_sigma(const recon::Response& response, const std::vector<float>& sigma,
                  const std::vector<hal::ChannelStatus>& status) {
@@ -131,15 +112,15 @@ MeasuredSensor sensor_of(const calib::Estimate& estimate) {
   return sensor;
 }
 
-Result<MeasuredRows> load(const calib::EyeFile& file, const calib::StoredEstimate& stored) {
-  calib::Estimate estimate = TRY(file.load_estimate(stored.id));
-  calib::MeasuredResponse measured = TRY(file.load_response(stored.id));
+/// Rows that are measured or interpolated, as all that follows takes them.
+Result<MeasuredRows> made_ready(const calib::EyeFile& file, RowsAtDistance rows) {
+  calib::Estimate& estimate = rows.estimate;
   const hal::ObjectPlane& plane = file.eye().plane;
-  const std::string which = fmt::format("estimate {}", stored.id);
-  if (measured.response.cols() != plane.pixels()) {
+  const std::string which = fmt::format("estimate {}", rows.id);
+  if (rows.measured.response.cols() != plane.pixels()) {
     return fail(ErrorCode::mismatch, file.path(),
                 fmt::format("says in {} what {} pixels give, expected the {}x{} of its object plane", which,
-                            measured.response.cols(), plane.rows, plane.cols));
+                            rows.measured.response.cols(), plane.rows, plane.cols));
   }
   std::vector<int> masked;
   for (std::size_t m = 0; m < estimate.status.size(); ++m) {
@@ -152,17 +133,30 @@ Result<MeasuredRows> load(const calib::EyeFile& file, const calib::StoredEstimat
   MeasuredEye eye;
   eye.file = file.path();
   eye.serial = file.eye().serial;
-  eye.estimate = stored.id;
-  if (!estimate.sessions.empty()) eye.raw_hash = stored.raw_hash;
+  eye.estimate = rows.id;
+  if (!estimate.sessions.empty()) eye.raw_hash = rows.raw_hash;
   eye.method = std::move(estimate.method);
   eye.made_unix_s = estimate.made_unix_s;
   eye.distance_mm = estimate.distance_mm;
+  eye.between = std::move(rows.between);
   eye.sensor = sensor_of(estimate);
-  eye.row_sigma = row_sigma(measured.response, measured.sigma, estimate.status);
+  eye.row_sigma = row_sigma(rows.measured.response, rows.measured.sigma, estimate.status);
   eye.status = std::move(estimate.status);
-  recon::Response response = TRY(std::move(measured.response).with_image(plane.rows, plane.cols));
+  recon::Response response = TRY(std::move(rows.measured.response).with_image(plane.rows, plane.cols));
   if (!masked.empty()) response = response.without_rows(masked);
   return MeasuredRows{std::move(response), std::move(eye)};
+}
+
+/// What a program is told of one of two measurements.
+Figures figures_of(const MeasuredBetween::Side& side) {
+  return {{"distance_mm", side.distance_mm},
+          {"estimate", side.estimate},
+          {"sessions", Value::List(side.sessions.begin(), side.sessions.end())}};
+}
+
+Value value_of(const std::optional<MeasuredBetween>& between) {
+  if (!between) return {};
+  return Figures{{"near", figures_of(between->near)}, {"far", figures_of(between->far)}};
 }
 
 }  // namespace
@@ -187,7 +181,7 @@ Result<void> check_is_of(const calib::EyeFile& file, const Board& board) {
 Result<MeasuredRows> measured_rows(const Board& board) {
   const auto file = TRY(calib::EyeFile::open(board.eye_path(), calib::EyeFileMode::read));
   TRY(check_is_of(file, board));
-  return load(file, TRY(newest_of(file, board.object.distance_mm)));
+  return made_ready(file, TRY(rows_at(file, board.object.distance_mm)));
 }
 
 Result<std::optional<double>> measured_exposure_s(const Board& board) {
@@ -195,17 +189,13 @@ Result<std::optional<double>> measured_exposure_s(const Board& board) {
   if (board.eye_file.empty()) return unknown;
   const auto file = TRY(calib::EyeFile::open(board.eye_path(), calib::EyeFileMode::read));
   TRY(check_is_of(file, board));
-  const auto stored = TRY(newest_of(file, board.object.distance_mm));
-  const calib::Estimate estimate = TRY(file.load_estimate(stored.id));
-  if (estimate.sessions.empty()) return unknown;
-  auto captures = TRY(file.captures(estimate.sessions.front()));
-  const auto first = TRY(captures.next());
-  return first ? first->exposure_s : unknown;
+  const EstimateChoice chosen = TRY(choose_estimate(file, board.object.distance_mm));
+  return exposure_s(file, TRY(file.load_estimate(chosen.nearer.id)));
 }
 
 Result<MeasuredRows> newest_rows(const std::string& path, std::optional<double> distance_mm) {
   const auto file = TRY(calib::EyeFile::open(path, calib::EyeFileMode::read));
-  return load(file, TRY(newest_of(file, distance_mm)));
+  return made_ready(file, TRY(rows_at(file, distance_mm)));
 }
 
 double fit_sigma(double noise_sigma, const MeasuredEye* eye) noexcept {
@@ -225,6 +215,7 @@ Value value_of(const MeasuredEye* eye) {
                  {"method", eye->method},
                  {"made_unix_s", eye->made_unix_s},
                  {"distance_mm", eye->distance_mm},
+                 {"between", value_of(eye->between)},
                  {"masked", eye->masked()},
                  {"dark_levels", !eye->sensor.dark.empty()},
                  {"linearity_points", eye->sensor.codes.size()},
@@ -232,8 +223,13 @@ Value value_of(const MeasuredEye* eye) {
 }
 
 std::string provenance_lines(const MeasuredEye& eye) {
-  return fmt::format("eye_file = {}\neye_serial = {}\nestimate = {}\nestimate_raw_hash = {}\n", visible_text(eye.file),
-                     visible_text(eye.serial), eye.estimate, eye.raw_hash ? hash_text(*eye.raw_hash) : "none");
+  std::string lines =
+      fmt::format("eye_file = {}\neye_serial = {}\nestimate = {}\nestimate_raw_hash = {}\n", visible_text(eye.file),
+                  visible_text(eye.serial), eye.estimate, eye.raw_hash ? hash_text(*eye.raw_hash) : "none");
+  if (!eye.between) return lines;
+  const auto& [near, far] = *eye.between;
+  return lines + fmt::format("interpolated = between {} and {} mm (sessions {} and {})\n", near.distance_mm,
+                             far.distance_mm, fmt::join(near.sessions, ", "), fmt::join(far.sessions, ", "));
 }
 
 }  // namespace compueye::firmware

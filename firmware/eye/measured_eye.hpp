@@ -20,15 +20,26 @@ class EyeFile;
 
 namespace compueye::firmware {
 
+/// The two measurements that rows lie between.
+struct MeasuredBetween {
+  struct Side {
+    double distance_mm = 0.0;
+    std::int64_t estimate = 0;
+    std::vector<std::int64_t> sessions;
+  };
+  Side near, far;
+};
+
 /// What an eye file says of an eye beside its rows, and where it has that from.
 struct MeasuredEye {
   std::string file;
   std::string serial;                      ///< of the eye that was measured; empty: not known
-  std::int64_t estimate = 0;               ///< its number in the file
+  std::int64_t estimate = 0;               ///< its number in the file; of two the nearer one's
   std::optional<std::uint64_t> raw_hash;   ///< of the captures that it was made from; nothing: from elsewhere
   std::string method;                      ///< of the estimator
   std::int64_t made_unix_s = 0;            ///< when
   double distance_mm = 0.0;                ///< that the rows are of
+  std::optional<MeasuredBetween> between;  ///< there: the rows are interpolated (calib/depth)
   std::vector<hal::ChannelStatus> status;  ///< M, by ommatidium
   MeasuredSensor sensor;                   ///< masks what is not good
   /// Of a sample in white pixels, from errors of its row's entries, each by itself, in front of a picture whose pixels
@@ -43,23 +54,20 @@ struct MeasuredRows {
   MeasuredEye eye;
 };
 
-/// An estimate is of a distance that is no further from its own.
-inline constexpr double same_distance_mm = 0.01;
-
 /// Whether a file is of the board's eye and object plane, at whatever distance, and of the serial that the board names
 /// if it does. Error mismatch.
 [[nodiscard]] hal::Result<void> check_is_of(const calib::EyeFile& file, const Board& board);
 
-/// The newest estimate of the board's eye file at the board's distance. Errors: those of calib::EyeFile; mismatch (a
-/// file of another eye or object plane, or of another serial than the board names; no estimate at this distance: those
-/// there are, are named), not_found (no estimate at all), out_of_range (no channel is good).
+/// The rows of the board's eye file at the board's distance, by choose_estimate(): measured, or interpolated. Errors:
+/// those of calib::EyeFile and choose_estimate(); mismatch (a file of another eye or object plane, or of another serial
+/// than the board names; two sessions that were taken otherwise), out_of_range (no channel is good).
 [[nodiscard]] hal::Result<MeasuredRows> measured_rows(const Board& board);
 
-/// The newest estimate of a file, at that distance where one is given. Errors: as above.
+/// Those of a file, at that distance where one is given, else of the newest estimate. Errors: as above.
 [[nodiscard]] hal::Result<MeasuredRows> newest_rows(const std::string& file, std::optional<double> distance_mm);
 
-/// Of a frame of the session that those rows are of: what other frames have to be exposed like. Nothing: the session
-/// did not choose it, or the board has no eye file. Errors: as of measured_rows().
+/// Of a frame of the session that those rows are of, the nearer one of two: what other frames have to be exposed like.
+/// Nothing: the session did not choose it, or the board has no eye file. Errors: as of measured_rows().
 [[nodiscard]] hal::Result<std::optional<double>> measured_exposure_s(const Board& board);
 
 /// By how much a sample may differ from what the response makes of the right picture: its noise, and the errors of its
@@ -75,7 +83,9 @@ inline constexpr double same_distance_mm = 0.01;
 /// Those that stand under "measured", for people.
 inline constexpr std::string_view measured_sentence =
     "{measured.file}, estimate {measured.estimate} ({measured.method}) of eye '{measured.serial}' at "
-    "{measured.distance_mm} mm[, {measured.masked} masked]";
+    "{measured.distance_mm} mm[, interpolated between {measured.between.near.distance_mm} and "
+    "{measured.between.far.distance_mm} mm (sessions {measured.between.near.sessions} and "
+    "{measured.between.far.sessions})][, {measured.masked} masked]";
 
 /// "eye_file = F.eye" and the other lines, of the header of a recording.
 [[nodiscard]] std::string provenance_lines(const MeasuredEye& eye);

@@ -15,6 +15,7 @@
 #include "firmware/app/commands/inspect.hpp"
 #include "firmware/calibration/error_budget.hpp"
 #include "firmware/calibration/row_error.hpp"
+#include "firmware/eye/estimate_choice.hpp"
 #include "firmware/text/date.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
@@ -175,6 +176,10 @@ Result<void> add_eye_file_figures(const std::string& path, Figures& figures) {
   figures.add("estimates", Value::List(estimates.begin(), estimates.end()), "estimates", "{:count}");
   for (std::size_t i = 0; i < estimates.size(); ++i) add_lines(estimates[i], i, figures);
   if (stored.empty()) return {};
+  if (const auto range = TRY(interpolated_range(file))) {
+    figures.add("interpolated", Figures{{"from_mm", range->from_mm}, {"to_mm", range->to_mm}}, "interpolated",
+                "rows of any distance between {interpolated.from_mm} and {interpolated.to_mm} mm");
+  }
   figures.add("row_error", median_row_error(TRY(file.load_response(stored.back().id))), "newest rows",
               "known to {:2%|no stated sigma} (median relative error by their own sigma)");
   return {};

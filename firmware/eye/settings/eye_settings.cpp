@@ -96,7 +96,7 @@ void add_object(std::vector<Setting>& all) {
                                                         "from the lens tip at the front of the eye to the plane")
            .within(length_mm)
            .stated()
-           .option_of("run record simulate response import calibrate", "--distance", "MM")});
+           .option_of("run record simulate response import calibrate compare pareto", "--distance", "MM")});
 }
 
 void add_sensor(std::vector<Setting>& all) {

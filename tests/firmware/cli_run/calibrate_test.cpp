@@ -90,6 +90,12 @@ TEST_CASE("what a session measured is estimated by --resume where a stop came be
   CHECK(contains(before.err, "no estimate at 28 mm"));
   REQUIRE(with({"calibrate"}, {"--plan", plan.string()}).exit_code == 0);
   CHECK(with({"run"}, {"--frames", "1", "--lossless"}).exit_code == 0);
+  // Nor are rows made between the two: the first was not taken by this command, and of another configuration.
+  const Ended between =
+      test::compueye({"run", "--board", path, "--eye", eye, "--frames", "1", "--lossless", "--distance", "29"});
+  CHECK(between.exit_code == 1);
+  CHECK(contains(between.err, "sessions at 28 and 30 mm, but with other settings"));
+  CHECK(contains(test::compueye({"inspect", eye}).out, "between 28 and 30 mm"));
   const Ended again = test::compueye({"calibrate", "--board", path, "--eye", eye, "--resume"});
   CHECK(again.exit_code == 2);
   CHECK(contains(again.err, "--resume"));
