@@ -30,14 +30,16 @@ struct FrameAccount {
   /// Of the dropped ones, those that nobody has counted: the device forgot or could not be asked, and so many follow
   /// from its rate and the time.
   std::uint64_t estimated = 0;
+  /// Of the eye under a check's light and not of its scene: neither delivered nor lost.
+  std::uint64_t checked = 0;
 
   std::uint64_t& drops(DropReason reason) noexcept { return dropped[static_cast<std::size_t>(reason)]; }
   [[nodiscard]] std::uint64_t drops(DropReason reason) const noexcept {
     return dropped[static_cast<std::size_t>(reason)];
   }
   [[nodiscard]] std::uint64_t total_dropped() const noexcept;
-  /// produced = delivered + sum(dropped)
-  [[nodiscard]] bool balanced() const noexcept { return produced == delivered + total_dropped(); }
+  /// produced = delivered + sum(dropped) + checked
+  [[nodiscard]] bool balanced() const noexcept { return produced == delivered + total_dropped() + checked; }
 };
 
 }  // namespace compueye::hal

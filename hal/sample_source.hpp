@@ -49,12 +49,16 @@ class SampleSource {
 
   [[nodiscard]] bool started() const noexcept { return started_; }
 
-  /// Since the last start(): produced by the device = delivered by read() + dropped by reason.
+  /// Since the last start(): produced by the device = delivered by read() + dropped by reason + taken for checks.
   [[nodiscard]] FrameAccount account() const noexcept { return do_account(); }
 
   /// Whether it lost its device or its stream and is getting it back; from any thread. read() times out meanwhile, and
   /// this ends by itself, in a time that the source bounds: with a frame, or with a read() that says `disconnected`.
   [[nodiscard]] bool recovering() const noexcept { return do_recovering(); }
+
+  /// Whether frames came in the last read() that timed out, and were kept for a check of the eye: no silence. For the
+  /// thread that reads.
+  [[nodiscard]] bool withheld() const noexcept { return do_withheld(); }
 
   /// How often it lost its device or its stream since the last start(); for the thread that reads.
   [[nodiscard]] std::uint64_t outages() const noexcept { return do_outages(); }
@@ -73,6 +77,7 @@ class SampleSource {
   virtual void do_stop() noexcept = 0;
   [[nodiscard]] virtual FrameAccount do_account() const noexcept = 0;
   [[nodiscard]] virtual bool do_recovering() const noexcept { return false; }
+  [[nodiscard]] virtual bool do_withheld() const noexcept { return false; }
   [[nodiscard]] virtual std::uint64_t do_outages() const noexcept { return 0; }
   [[nodiscard]] virtual std::uint64_t do_faults() const noexcept { return 0; }
   [[nodiscard]] virtual std::vector<Counter> do_counters() const { return {}; }

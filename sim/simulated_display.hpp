@@ -12,8 +12,9 @@ namespace compueye::sim {
 /// believes that it is there at once: how long it takes is a calibration's to find out.
 class SimulatedDisplay final : public hal::Illuminator {
  public:
-  /// Both must outlive it.
+  /// Both must outlive it. What it covered is seen again when it is gone.
   SimulatedDisplay(SimulatedEye& eye, hal::Clock& clock);
+  ~SimulatedDisplay() override { eye_.uncover(); }
 
   [[nodiscard]] const hal::IlluminatorDescription& describe() const noexcept override { return description_; }
   [[nodiscard]] hal::Result<std::int64_t> show(std::span<const float> intensities) override;

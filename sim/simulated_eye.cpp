@@ -43,14 +43,23 @@ Result<std::unique_ptr<SimulatedEye>> SimulatedEye::create(SimulatedEyeSettings 
   for (const Scene& scene : settings.scenes) {
     simulations.push_back(TRY(Simulation::create(settings.board, scene, settings.seed, settings.planning)));
   }
+  std::optional<Simulation> display;
+  if (settings.display) {
+    Planning planning;
+    planning.mode = PlanMode::called;
+    display = TRY(Simulation::create(settings.board, *settings.display, settings.seed, planning));
+  }
   settings.planning.measure = nullptr;  // may look at what its caller owns
   std::sort(settings.faults.lost_frames.begin(), settings.faults.lost_frames.end());
-  return std::unique_ptr<SimulatedEye>(new SimulatedEye(std::move(settings), std::move(simulations), clock));
+  return std::unique_ptr<SimulatedEye>(
+      new SimulatedEye(std::move(settings), std::move(simulations), std::move(display), clock));
 }
 
-SimulatedEye::SimulatedEye(SimulatedEyeSettings settings, std::vector<Simulation> simulations, hal::Clock& clock)
+SimulatedEye::SimulatedEye(SimulatedEyeSettings settings, std::vector<Simulation> simulations,
+                           std::optional<Simulation> display, hal::Clock& clock)
     : settings_(std::move(settings)),
       simulations_(std::move(simulations)),
+      display_(std::move(display)),
       clock_(clock),
       power_on_ns_(clock.now_ns()) {
   const int channels = settings_.board.eye.ommatidia();
@@ -75,17 +84,16 @@ void SimulatedEye::Change::light_at(std::int64_t t_ns, std::span<double> light) 
 }
 
 Result<void> SimulatedEye::show(const hal::Image& picture, double response_s) {
-  Simulation& display = simulations_.front();
   const std::int64_t now_ns = clock_.now_ns();
   Change next{now_ns, response_s, std::vector<double>(codes_.size()), std::vector<double>(codes_.size())};
   if (change_) {
     change_->light_at(now_ns, next.before);
   } else {
-    std::ranges::copy(display.noise_free(0), next.before.begin());
+    std::ranges::copy(simulations_.front().noise_free(0), next.before.begin());
   }
   if (!picture.pixels.empty()) {
-    TRY(display.show(picture));
-    std::ranges::copy(display.noise_free(0), next.after.begin());
+    TRY(display().show(picture));
+    std::ranges::copy(display().noise_free(0), next.after.begin());
   }
   light_.resize(codes_.size());
   change_ = std::move(next);
@@ -95,7 +103,7 @@ Result<void> SimulatedEye::show(const hal::Image& picture, double response_s) {
 bool SimulatedEye::codes_of(std::uint64_t frame, std::int64_t start_ns) {
   if (!change_) return simulations_[scene_of_frame(frame)].codes(frame, codes_);
   change_->light_at(start_ns, light_);
-  return simulations_.front().codes_of(light_, frame, codes_);
+  return display().codes_of(light_, frame, codes_);
 }
 
 std::span<const double> SimulatedEye::noise_free(std::uint64_t frame) {

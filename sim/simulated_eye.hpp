@@ -21,6 +21,7 @@ struct SimulatedEyeSettings {
   EyeToSimulate board;                       ///< its dead channels are invalid in every frame
   std::vector<Scene> scenes;                 ///< at least one; shown in turn, over and over
   int frames_per_scene = 1;                  ///< >= 1
+  std::optional<Scene> display;              ///< what show() covers them with, by every effect that is called for
   Planning planning;                         ///< of every scene
   double frame_rate_hz = 0.0;                ///< 0: unpaced, a frame whenever one is read; else up to 1e6
   std::uint64_t seed = 0;                    ///< of every random draw
@@ -47,10 +48,12 @@ class SimulatedEye final : public hal::SampleSource {
   [[nodiscard]] static hal::Result<std::unique_ptr<SimulatedEye>> create(SimulatedEyeSettings settings,
                                                                          hal::Clock& clock);
 
-  /// From the exposures on that begin now, the first scene's first surface shows `picture` (no pixels: no light at
-  /// all), and goes there from what it showed with a time constant of `response_s`. A display is one scene. Errors:
-  /// those of Simulation::show().
+  /// From the exposures on that begin now, the display's first surface shows `picture` (no pixels: no light at all),
+  /// and goes there from what was seen with a time constant of `response_s`. Where the settings have no display the
+  /// first scene is it. Errors: those of Simulation::show().
   [[nodiscard]] hal::Result<void> show(const hal::Image& picture, double response_s);
+  /// The display is gone, and the eye sees its scenes again.
+  void uncover() noexcept { change_.reset(); }
 
   /// The M signals that the optics deliver in frame `frame`, in fully seen pixels at white, and what the converter is
   /// given in LSB. Valid until the next frame.
@@ -63,7 +66,8 @@ class SimulatedEye final : public hal::SampleSource {
   [[nodiscard]] const SimulatedEyeSettings& settings() const noexcept { return settings_; }
 
  private:
-  SimulatedEye(SimulatedEyeSettings settings, std::vector<Simulation> simulations, hal::Clock& clock);
+  SimulatedEye(SimulatedEyeSettings settings, std::vector<Simulation> simulations, std::optional<Simulation> display,
+               hal::Clock& clock);
 
   [[nodiscard]] const hal::SourceDescription& do_describe() const noexcept override { return description_; }
   hal::Result<void> do_start() override;
@@ -78,6 +82,7 @@ class SimulatedEye final : public hal::SampleSource {
   void overwrite_oldest(std::uint64_t finished) noexcept;
   hal::Result<hal::SampleBlock> deliver(std::int64_t now_ns);
   [[nodiscard]] bool codes_of(std::uint64_t frame, std::int64_t start_ns);
+  [[nodiscard]] Simulation& display() noexcept { return display_ ? *display_ : simulations_.front(); }
 
   /// A change of light, in signals. A frame is given what there is at its beginning.
   struct Change {
@@ -90,6 +95,7 @@ class SimulatedEye final : public hal::SampleSource {
 
   SimulatedEyeSettings settings_;
   std::vector<Simulation> simulations_;  // one a scene
+  std::optional<Simulation> display_;    // that covers them
   hal::Clock& clock_;
   hal::SourceDescription description_;
   std::int64_t power_on_ns_ = 0;  // Clock time of device time 0

@@ -45,6 +45,7 @@ struct EyeChange {
   double rest_chance = 1.0;
 
   bool gain_changed = false, turned = false, rest_changed = false, dark_changed = false;
+  bool dark_judged = true;  ///< false: there was light that was not the lamp's, which may be all that differs
   [[nodiscard]] bool changed() const noexcept {
     return gain_changed || turned || rest_changed || dark_changed || !channels.empty() || !dark_channels.empty();
   }

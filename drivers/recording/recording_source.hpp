@@ -72,6 +72,7 @@ class RecordingSource final : public hal::SampleSource {
   void do_stop() noexcept override;
   [[nodiscard]] hal::FrameAccount do_account() const noexcept override { return source_.account(); }
   [[nodiscard]] bool do_recovering() const noexcept override { return source_.recovering(); }
+  [[nodiscard]] bool do_withheld() const noexcept override { return source_.withheld(); }
   [[nodiscard]] std::uint64_t do_outages() const noexcept override { return source_.outages(); }
   [[nodiscard]] std::uint64_t do_faults() const noexcept override { return source_.faults(); }
   [[nodiscard]] std::vector<hal::Counter> do_counters() const override { return source_.counters(); }

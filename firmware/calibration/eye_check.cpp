@@ -157,6 +157,20 @@ void add_then(const LookedBack& back, const std::vector<std::size_t>& told, cali
   }
 }
 
+bool valid_in(const calib::Capture& capture, std::size_t m) {
+  return capture.valid.empty() || capture.valid[m] != 0;
+}
+
+/// More frames of the same.
+void add(const calib::Capture& more, calib::Capture& to) {
+  to.frames += more.frames;
+  if (to.valid.empty()) to.valid.assign(to.codes.size(), 1);
+  for (std::size_t m = 0; m < to.codes.size(); ++m) {
+    to.codes[m] += more.codes[m];
+    to.valid[m] = valid_in(to, m) && valid_in(more, m) ? 1 : 0;
+  }
+}
+
 }  // namespace
 
 Result<EyeCheck> EyeCheck::create(const calib::EyeFile& file, double distance_mm, double exposure_s, double unit_lsb) {
@@ -198,30 +212,41 @@ Result<EyeCheck> EyeCheck::create(const calib::EyeFile& file, double distance_mm
   check.plan_ = std::move(back.plan);
   check.noise_ = back.noise;
   check.own_noise_ = std::move(back.own_noise);
-  check.dark_noise_ = 1.0 / dark_frames + 1.0 / back.dark_frames;
+  check.dark_frames_ = back.dark_frames;
   check.linearity_ = std::move(back.linearity);
   return check;
 }
 
-Result<calib::EyeChange> EyeCheck::judge(std::span<const calib::Capture> captures) const {
-  const auto channels = static_cast<std::size_t>(samples_.channels);
-  if (captures.size() != schedule_.size()) {
+std::vector<calib::Wanted> EyeCheck::schedule(Around around) const {
+  std::vector<calib::Wanted> all = schedule_;
+  if (around == Around::scene) all.push_back(schedule_.front());
+  return all;
+}
+
+Result<void> EyeCheck::check_captures(std::span<const calib::Capture> captures, Around around) const {
+  const std::size_t wanted = schedule_.size() + (around == Around::scene ? 1 : 0);
+  if (captures.size() != wanted) {
     return fail(ErrorCode::mismatch, "check",
-                "has " + std::to_string(captures.size()) + " captures, expected " + std::to_string(schedule_.size()));
+                "has " + std::to_string(captures.size()) + " captures, expected " + std::to_string(wanted));
   }
+  for (const calib::Capture& capture : captures) {
+    if (capture.codes.size() == static_cast<std::size_t>(samples_.channels)) continue;
+    return fail(ErrorCode::mismatch, "check",
+                "has a capture of " + std::to_string(capture.codes.size()) + " channels, expected " +
+                    std::to_string(samples_.channels));
+  }
+  return {};
+}
+
+/// What the pictures give over the first capture, which is without light.
+calib::LightSamples EyeCheck::seen(std::span<const calib::Capture> captures) const {
   calib::Captures now;
   now.linearity = linearity_;
   for (std::size_t k = 0; k < captures.size(); ++k) {
     const calib::Capture& capture = captures[k];
-    if (capture.codes.size() != channels) {
-      return fail(ErrorCode::mismatch, "check",
-                  "has a capture of " + std::to_string(capture.codes.size()) + " channels, expected " +
-                      std::to_string(channels));
-    }
     std::vector<double>& codes = k == 0 ? now.darks.codes : now.codes;
-    for (std::size_t m = 0; m < channels; ++m) {
-      const bool valid = capture.valid.empty() || capture.valid[m] != 0;
-      codes.push_back(valid ? static_cast<double>(capture.codes[m]) / capture.frames : not_a_number);
+    for (std::size_t m = 0; m < capture.codes.size(); ++m) {
+      codes.push_back(valid_in(capture, m) ? static_cast<double>(capture.codes[m]) / capture.frames : not_a_number);
     }
     if (k > 0) now.frames.push_back(capture.frames);
   }
@@ -229,22 +254,71 @@ Result<calib::EyeChange> EyeCheck::judge(std::span<const calib::Capture> capture
   now.darks.frames = captures.front().frames;
   now.time.assign(captures.size() - 1, 0.0);
   now.patterns.assign(captures.size() - 1, 0.0F);  // one pixel each: only their number counts
-  const calib::LightSamples light = calib::light_samples(now, noise_, samples_.channels, 1, {});
-  calib::CheckSamples samples = samples_;
-  for (std::size_t m = 0; m < channels; ++m) {
-    // Without lamp and averaging: of one frame, as these are.
-    const double dark_variance = own_noise_[m] * light.fixed_variance.front() * dark_noise_;
-    samples.dark_now.push_back(light.dark_lsb[m] / noise_.unit_lsb);
-    samples.dark_variance.push_back(dark_variance);
+  return calib::light_samples(now, noise_, samples_.channels, 1, {});
+}
+
+/// Whether what is beside the lamp, which is taken off, was the same before and after the pictures: of each channel
+/// alone, and of all as white has them.
+Result<void> EyeCheck::check_still(std::span<const calib::Capture> captures, const calib::Capture& closing) const {
+  std::vector<calib::Capture> closed(captures.begin(), captures.end());
+  closed.front() = closing;
+  const calib::LightSamples before = seen(captures), after = seen(closed);
+  // A noise that was measured by 64 frames is known to a tenth.
+  constexpr double each_question = 0.5e-3, known_to = 1.1;
+  const double frames = known_to * known_to * (1.0 / captures.front().frames + 1.0 / closing.frames);
+  double worst = 0.0, product = 0.0, square = 0.0, count = 0.0;
+  for (std::size_t m = 0; m < before.dark_lsb.size(); ++m) {
+    const double was = before.dark_lsb[m] / noise_.unit_lsb, is = after.dark_lsb[m] / noise_.unit_lsb;
+    const double variance = frames * variance_of(before, 0, 0.5 * (was + is) - samples_.dark_then[m], own_noise_[m]);
+    if (samples_.judged[m] == 0 || !valid_in(captures.front(), m) || !valid_in(closing, m)) continue;
+    worst = std::max(worst, std::fabs(is - was) / std::sqrt(variance));
+    product += samples_.then[m] * (is - was) / variance;
+    square += samples_.then[m] * samples_.then[m] / variance;
+    count += 1.0;
   }
-  for (std::size_t p = 0; p + 1 < captures.size(); ++p) {
+  const double together = square > 0.0 ? std::fabs(product) / std::sqrt(square) : 0.0;
+  const auto chance = [](double deviations) { return std::erfc(deviations / std::sqrt(2.0)); };
+  if (chance(worst) * count >= each_question && chance(together) >= each_question) return {};
+  return fail(
+      ErrorCode::out_of_range, "scene",
+      fmt::format("changed while it was under the light, by {:.1f} times its noise in one ommatidium and {:.1f} "
+                  "times in all together: keep it still or dark as long as a check takes",
+                  worst, together));
+}
+
+Result<calib::EyeChange> EyeCheck::judge(std::span<const calib::Capture> captures, Around around) const {
+  TRY(check_captures(captures, around));
+  const auto channels = static_cast<std::size_t>(samples_.channels);
+  std::vector<calib::Capture> looks(captures.begin(), captures.begin() + static_cast<std::ptrdiff_t>(schedule_.size()));
+  calib::Capture& unlit = looks.front();
+  if (around == Around::scene) {
+    TRY(check_still(looks, captures.back()));
+    add(captures.back(), unlit);
+  }
+  const calib::LightSamples light = seen(looks);
+  calib::CheckSamples samples = samples_;
+  std::vector<double> beside;  // light that is not the lamp's
+  for (std::size_t m = 0; m < channels; ++m) {
+    samples.dark_now.push_back(light.dark_lsb[m] / noise_.unit_lsb);
+    beside.push_back(std::max(samples.dark_now[m] - samples.dark_then[m], 0.0));
+    const double a_frame = variance_of(light, 0, beside[m], own_noise_[m]);
+    const double dark_frame = variance_of(light, 0, 0.0, own_noise_[m]);
+    samples.dark_variance.push_back(a_frame / unlit.frames + dark_frame / dark_frames_);
+  }
+  for (std::size_t p = 0; p + 1 < looks.size(); ++p) {
     for (std::size_t m = 0; m < channels; ++m) {
       samples.now.push_back(light.at(p, m));
       // Of both looks the dark level was taken off, which has noise of its own.
-      samples.now_variance.push_back(variance_of(light, p, light.at(p, m), own_noise_[m]) + samples.dark_variance[m]);
+      samples.now_variance.push_back(variance_of(light, p, light.at(p, m) + beside[m], own_noise_[m]) +
+                                     samples.dark_variance[m]);
     }
   }
-  return calib::eye_change(samples);
+  calib::EyeChange change = TRY(calib::eye_change(samples));
+  if (around == Around::scene && (change.dark_changed || !change.dark_channels.empty())) {
+    change.dark_judged = change.dark_changed = false;
+    change.dark_channels.clear();
+  }
+  return change;
 }
 
 }  // namespace compueye::firmware

@@ -7,9 +7,11 @@
 
 #include "calib/check/eye_change.hpp"
 #include "calib/estimate/captures.hpp"
+#include "calib/estimate/light_samples.hpp"
 #include "calib/eye_file/eye_file.hpp"
 #include "calib/session/capture_schedule.hpp"
 #include "calib/session/session_plan.hpp"
+#include "firmware/calibration/around.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
@@ -31,13 +33,20 @@ class EyeCheck {
   [[nodiscard]] int bits() const noexcept { return bits_; }  ///< of the session's codes
   /// What the session was exposed for, where that could be set.
   [[nodiscard]] std::optional<std::int64_t> exposure_ns() const noexcept { return exposure_ns_; }
-  /// What is to be taken: no light, white, and the three patterns that tell most of a turn.
-  [[nodiscard]] const std::vector<calib::Wanted>& schedule() const noexcept { return schedule_; }
-  /// Captures of that schedule, in its order. Errors: mismatch (others, or of other channels), and those of
-  /// calib::eye_change().
-  [[nodiscard]] hal::Result<calib::EyeChange> judge(std::span<const calib::Capture> captures) const;
+  /// What is to be taken: no light, white, and the three patterns that tell most of a turn; in a scene no light once
+  /// more, so that it is known whether the scene stood still.
+  [[nodiscard]] std::vector<calib::Wanted> schedule(Around around = Around::dark) const;
+  /// Captures of that schedule, in its order. Errors: mismatch (others, or of other channels), those of
+  /// calib::eye_change(), and out_of_range (at `scene`: its light changed meanwhile).
+  [[nodiscard]] hal::Result<calib::EyeChange> judge(std::span<const calib::Capture> captures,
+                                                    Around around = Around::dark) const;
 
  private:
+  [[nodiscard]] hal::Result<void> check_captures(std::span<const calib::Capture> captures, Around around) const;
+  [[nodiscard]] calib::LightSamples seen(std::span<const calib::Capture> captures) const;
+  [[nodiscard]] hal::Result<void> check_still(std::span<const calib::Capture> captures,
+                                              const calib::Capture& closing) const;
+
   calib::SessionPlan plan_;
   std::int64_t session_ = 0, estimate_ = 0;
   int bits_ = 0;
@@ -46,7 +55,7 @@ class EyeCheck {
   calib::CheckSamples samples_;  // all but what is seen now
   calib::CodeNoise noise_;
   std::vector<calib::LinearityTable> linearity_;
-  double dark_noise_ = 0.0;        // variance of the difference of the two dark levels over that of a frame
+  double dark_frames_ = 1.0;       // averaged in the session's dark levels
   std::vector<double> own_noise_;  // M: variance of a channel's read noise over the median one's, >= 1
 };
 

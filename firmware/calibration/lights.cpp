@@ -76,10 +76,13 @@ Light manual(const LightWanted& wanted, const LightSite& site) {
 }
 
 constexpr std::array kinds{
-    LightKind{"sim", "a simulated display before a simulated eye, as --scene has it", nullptr},
-    LightKind{"display", "a monitor or projector of this machine, all of it or with --window a part", display},
-    LightKind{"device", "lamps of the eye's own device, one for each pixel of the object plane", device},
-    LightKind{"manual", "you: the pattern is written to --picture, and Enter says that it is before the eye", manual},
+    LightKind{"sim", "a simulated display before a simulated eye, as --scene has it", Around::dark, true, nullptr},
+    LightKind{"display", "a monitor or projector of this machine, all of it or with --window a part", Around::scene,
+              true, display},
+    LightKind{"device", "lamps of the eye's own device, one for each pixel of the object plane", Around::scene, true,
+              device},
+    LightKind{"manual", "you: the pattern is written to --picture, and Enter says that it is before the eye",
+              Around::scene, false, manual},
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/device/device_source.hpp"
+#include "firmware/calibration/around.hpp"
 #include "hal/clock.hpp"
 #include "hal/eye_geometry.hpp"
 #include "hal/illuminator.hpp"
@@ -43,6 +44,8 @@ struct LightSite {
 struct LightKind {
   std::string_view name;
   std::string_view meaning;  ///< for --help and docs/calibration.md
+  Around around;             ///< what it leaves to be seen beside itself
+  bool by_itself;            ///< needs nobody, so that it may check a running eye
   /// Before an eye on a cable; null: before simulated ones only. Errors: those of the light.
   hal::Result<std::unique_ptr<hal::Illuminator>> (*make)(const LightWanted& wanted, const LightSite& site);
 };

@@ -39,12 +39,17 @@ sim::Scene plain_display(const Board& board) {
   return scene;
 }
 
-hal::Result<SimulatedBench> SimulatedBench::create(const Board& board, const sim::Scene& scene, std::uint64_t seed) {
+hal::Result<sim::Scene> display_of_patterns(const Board& board, const sim::Scene& scene, std::uint64_t seed) {
   TRY(check_display(scene, board.object));
   sim::Scene display = scene;
   // Effects are planned by what is going to be shown; before white all over half of them would have no reason.
   display.surfaces.front().bands = {
       TRY(TRY(calib::pattern_family("blobs"))->draw(board.object.rows, board.object.cols, seed, 0))};
+  return display;
+}
+
+hal::Result<SimulatedBench> SimulatedBench::create(const Board& board, const sim::Scene& scene, std::uint64_t seed) {
+  sim::Scene display = TRY(display_of_patterns(board, scene, seed));
   SimulatedBench bench;
   bench.clock = std::make_unique<hal::VirtualClock>();
   auto settings = simulated_eye_settings(board, std::move(display), seed);

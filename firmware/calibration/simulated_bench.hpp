@@ -25,6 +25,10 @@ struct SimulatedBench {
                                                           std::uint64_t seed);
 };
 
+/// A display as a simulated eye is told of it, before it shows anything. Errors: mismatch (as above).
+[[nodiscard]] hal::Result<sim::Scene> display_of_patterns(const Board& board, const sim::Scene& scene,
+                                                          std::uint64_t seed);
+
 /// A display of the object plane's size, where the board has it, that shows light as it is told.
 [[nodiscard]] sim::Scene plain_display(const Board& board);
 

@@ -1,7 +1,5 @@
 #include "firmware/calibration/watched_eye.hpp"
 
-#include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace compueye::firmware {
@@ -11,35 +9,14 @@ constexpr std::int64_t no_frame_ns = 10'000'000'000, wait_ns = 200'000'000;
 
 }  // namespace
 
-WatchedEye::WatchedEye(hal::SampleSource& source, hal::Clock& clock) : source_(source), clock_(clock) {
-  const auto& map = source.describe().ommatidium_of_channel;
-  std::vector<std::int32_t> order(map.size());
-  std::iota(order.begin(), order.end(), 0);
-  in_order_ = map == order;
-  codes_.resize(map.size());
-  valid_.resize(map.size());
-  outages_ = source.outages();
-}
-
-hal::SampleBlock WatchedEye::ordered(const hal::SampleBlock& block) {
-  if (in_order_) return block;
-  const auto& map = source_.describe().ommatidium_of_channel;
-  for (std::size_t c = 0; c < map.size(); ++c) {
-    const auto m = static_cast<std::size_t>(map[c]);
-    codes_[m] = block.codes[c];
-    valid_[m] = block.valid[c];
-  }
-  hal::SampleBlock made = block;
-  made.codes = codes_;
-  made.valid = valid_;
-  return made;
-}
+WatchedEye::WatchedEye(hal::SampleSource& source, hal::Clock& clock)
+    : source_(source), clock_(clock), order_(source.describe()), outages_(source.outages()) {}
 
 hal::Result<hal::SampleBlock> WatchedEye::next(const std::function<bool()>& go_on) {
   std::int64_t waiting_since_ns = clock_.now_ns();
   for (;;) {
     auto block = source_.read(clock_.now_ns() + wait_ns);
-    if (block) return ordered(*block);
+    if (block) return order_.ordered(*block);
     if (block.error().code == hal::ErrorCode::disconnected) {
       block.error().sentence += "; --resume goes on with the session";
     }

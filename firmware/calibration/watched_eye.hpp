@@ -2,8 +2,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <vector>
 
+#include "firmware/calibration/ommatidium_order.hpp"
 #include "hal/clock.hpp"
 #include "hal/sample_source.hpp"
 
@@ -24,14 +24,10 @@ class WatchedEye {
   [[nodiscard]] bool was_lost() noexcept;
 
  private:
-  [[nodiscard]] hal::SampleBlock ordered(const hal::SampleBlock& block);
-
   hal::SampleSource& source_;
   hal::Clock& clock_;
-  bool in_order_ = false;
+  OmmatidiumOrder order_;
   std::uint64_t outages_ = 0;
-  std::vector<std::int32_t> codes_;
-  std::vector<std::uint8_t> valid_;
 };
 
 }  // namespace compueye::firmware

@@ -19,8 +19,6 @@
 namespace compueye::firmware {
 namespace {
 
-using Source = std::unique_ptr<hal::SampleSource>;
-
 /// A line a bus of protocol::buses.
 constexpr std::array cables{&transport::usb_cable, &transport::hid_cable};
 static_assert(cables.size() == protocol::buses.size());
@@ -29,15 +27,18 @@ const transport::Cable& cable_on(const protocol::Bus& bus) {
   return **std::find_if(cables.begin(), cables.end(), [&](const auto* cable) { return &cable->bus == &bus; });
 }
 
-hal::Result<Source> simulated(const Board& board, EyeWanted wanted, hal::Clock& clock) {
+hal::Result<BoardEye> simulated(const Board& board, EyeWanted wanted, hal::Clock& clock) {
   auto settings = simulated_eye_settings(board, std::move(wanted.scene), wanted.seed);
   if (!wanted.lossless) settings.frame_rate_hz = board.source.frame_rate_hz;
   settings.frame_limit = wanted.frame_limit;
-  return TRY(planned_eye(board, std::move(settings), clock, wanted.progress));
+  settings.display = std::move(wanted.display);
+  auto eye = TRY(planned_eye(board, std::move(settings), clock, wanted.progress));
+  sim::SimulatedEye* const at = eye.get();
+  return BoardEye{std::move(eye), at, nullptr};
 }
 
 /// Rows that were measured are of samples of their session's exposure.
-hal::Result<Source> attached(const Board& board, hal::Clock& clock) {
+hal::Result<BoardEye> attached(const Board& board, hal::Clock& clock) {
   const auto exposure_s = TRY(measured_exposure_s(board));
   if (exposure_s && *exposure_s * board.source.frame_rate_hz > 1.0 + 1e-9) {
     return hal::fail(
@@ -48,7 +49,8 @@ hal::Result<Source> attached(const Board& board, hal::Clock& clock) {
   }
   auto eye = TRY(attached_eye(board, clock));
   if (exposure_s) TRY(eye->set_exposure(std::llround(*exposure_s * 1e9)));
-  return eye;
+  device::DeviceSource* const at = eye.get();
+  return BoardEye{std::move(eye), nullptr, at};
 }
 
 /// What an eye says of itself.
@@ -65,7 +67,7 @@ hal::Result<hal::SourceDescription> ask(const transport::Cable& cable, const tra
 
 }  // namespace
 
-hal::Result<Source> board_source(const Board& board, EyeWanted wanted, hal::Clock& clock) {
+hal::Result<BoardEye> board_eye(const Board& board, EyeWanted wanted, hal::Clock& clock) {
   if (board.source.simulated()) return simulated(board, std::move(wanted), clock);
   if (wanted.lossless) {
     return hal::fail(hal::ErrorCode::usage, "--lossless",
@@ -74,6 +76,10 @@ hal::Result<Source> board_source(const Board& board, EyeWanted wanted, hal::Cloc
                                  board.name));
   }
   return attached(board, clock);
+}
+
+hal::Result<std::unique_ptr<hal::SampleSource>> board_source(const Board& board, EyeWanted wanted, hal::Clock& clock) {
+  return TRY(board_eye(board, std::move(wanted), clock)).source;
 }
 
 hal::Result<std::unique_ptr<device::DeviceSource>> attached_eye(const Board& board, hal::Clock& clock) {

@@ -17,6 +17,9 @@
 namespace compueye::device {
 class DeviceSource;
 }
+namespace compueye::sim {
+class SimulatedEye;
+}
 
 namespace compueye::firmware {
 
@@ -27,12 +30,23 @@ struct EyeWanted {
   bool lossless = false;   ///< a simulated eye waits for its reader instead of keeping the board's rate
   std::optional<std::uint64_t> frame_limit;  ///< frames that a simulated eye makes at most
   recon::Progress progress = {};             ///< of what a simulated eye's plan may take
+  std::optional<sim::Scene> display = {};    ///< that a simulated eye's scene can be covered with
+};
+
+/// The eye of a board, and which of the two it is: some lights are the eye's own.
+struct BoardEye {
+  std::unique_ptr<hal::SampleSource> source;
+  sim::SimulatedEye* simulated = nullptr;    ///< the source, or null
+  device::DeviceSource* attached = nullptr;  ///< likewise
 };
 
 /// The eye of a board: simulated, or on a cable and identified: the board's serial, or the first one there is where the
 /// board names none, exposed as it was measured. `clock` must outlive it. Errors: those of planned_eye() and
 /// DeviceSource::create(); mismatch (an eye of another number of channels or depth than the board says), usage
 /// (--lossless on a cable).
+[[nodiscard]] hal::Result<BoardEye> board_eye(const Board& board, EyeWanted wanted, hal::Clock& clock);
+
+/// Its source alone.
 [[nodiscard]] hal::Result<std::unique_ptr<hal::SampleSource>> board_source(const Board& board, EyeWanted wanted,
                                                                            hal::Clock& clock);
 

@@ -53,6 +53,10 @@ void AcquireStage::take(const hal::SampleBlock& block, RawSlot& slot) noexcept {
 bool AcquireStage::goes_on_after(hal::Error& error, std::int64_t waited_ns) noexcept {
   switch (error.code) {
     case hal::ErrorCode::timeout:
+      if (source_.withheld()) {
+        silent_ns_ = 0;
+        return true;
+      }
       ++read_timeouts_;
       if (source_.recovering()) {
         recovering_ns_ += waited_ns;

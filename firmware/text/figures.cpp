@@ -236,11 +236,8 @@ Figures figures_of(const hal::FrameAccount& account) {
     const auto reason = static_cast<hal::DropReason>(r);
     dropped.add(hal::name(reason), account.drops(reason));
   }
-  return {{"produced", account.produced},
-          {"delivered", account.delivered},
-          {"dropped", std::move(dropped)},
-          {"estimated", account.estimated},
-          {"balanced", account.balanced()}};
+  return {{"produced", account.produced},   {"delivered", account.delivered}, {"dropped", std::move(dropped)},
+          {"estimated", account.estimated}, {"checked", account.checked},     {"balanced", account.balanced()}};
 }
 
 Figures figures_of(const hal::Error& error) {

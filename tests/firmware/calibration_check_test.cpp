@@ -6,17 +6,13 @@
 #include <cstdint>
 #include <functional>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "firmware/calibration/calibration_run.hpp"
 #include "firmware/calibration/eye_check.hpp"
-#include "firmware/calibration/session_estimate.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
-#include "tests/firmware/short_session.hpp"
-#include "tests/firmware/temporary_folder.hpp"
+#include "tests/firmware/calibrated_eye.hpp"
 #include "tests/hal/error_check.hpp"
-#include "tests/source_folder.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -57,58 +53,27 @@ class ChangedEye final : public hal::SampleSource {
   std::vector<std::int32_t> codes_;
 };
 
-/// A session of a built eye, once for all tests, and looks at it later.
-class Calibrated {
- public:
-  Calibrated() {
-    board_.sensor.bits = 12;
-    board_.sensor.full_scale = 64.0;
-    CalibrationRequest request = test::short_session(32);
-    request.plan.dark_frames = request.plan.black_frames = request.plan.flat_frames = 32;
-    request.plan.ramp_steps = 0;
-    const SimulatedBench bench = SimulatedBench::create(board_, plain_display(board_), 1).value();
-    const std::int64_t id = run_calibration(request, {*bench.eye, *bench.display, *bench.clock}, file_, go_on).value();
-    CHECK(estimate_session(file_, file_.sessions().value().front(), {exposure_s(), unit_lsb(), "test", 0, 1}));
-    CHECK(id == 1);
-  }
+const test::CalibratedEye& calibrated() {
+  return test::CalibratedEye::once();
+}
 
-  [[nodiscard]] double exposure_s() const { return 1.0 / board_.source.frame_rate_hz; }
-  [[nodiscard]] double unit_lsb() const { return 1.0 / board_.sensor.lsb(); }
-  [[nodiscard]] EyeCheck check() const {
-    return EyeCheck::create(file_, board_.object.distance_mm, exposure_s(), unit_lsb()).value();
-  }
-  [[nodiscard]] const calib::EyeFile& file() const { return file_; }
-  [[nodiscard]] const Board& board() const { return board_; }
-
-  [[nodiscard]] calib::EyeChange look(
-      const sim::Scene& display, std::uint64_t seed,
-      const std::function<double(std::size_t)>& factor = [](std::size_t) { return 1.0; }) const {
-    const EyeCheck check = this->check();
-    const SimulatedBench bench = SimulatedBench::create(board_, display, seed).value();
-    ChangedEye eye(*bench.eye, board_.sensor.dark_level_lsb, factor);
-    const auto captures =
-        take_captures(check.plan(), check.schedule(), {eye, *bench.display, *bench.clock}, go_on).value();
-    return check.judge(captures).value();
-  }
-
- private:
-  Board board_ = load_board(test::source_path("boards/sim-8x8-built")).value();
-  test::TemporaryFolder folder_;
-  calib::EyeFile file_ =
-      calib::EyeFile::create((folder_.path() / "a.eye").string(), {board_.source.serial, board_.eye, board_.object})
-          .value();
-};
-
-const Calibrated& calibrated() {
-  static const Calibrated once;
-  return once;
+calib::EyeChange look(
+    const sim::Scene& display, std::uint64_t seed,
+    const std::function<double(std::size_t)>& factor = [](std::size_t) { return 1.0; }) {
+  const EyeCheck check = calibrated().check();
+  const Board& board = calibrated().board();
+  const SimulatedBench bench = SimulatedBench::create(board, display, seed).value();
+  ChangedEye eye(*bench.eye, board.sensor.dark_level_lsb, factor);
+  const auto captures =
+      take_captures(check.plan(), check.schedule(), {eye, *bench.display, *bench.clock}, go_on).value();
+  return check.judge(captures).value();
 }
 
 }  // namespace
 
 TEST_CASE("an eye that is as it was is found so, whatever its noise") {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const calib::EyeChange change = calibrated().look(plain_display(calibrated().board()), seed);
+    const calib::EyeChange change = look(plain_display(calibrated().board()), seed);
     CAPTURE(seed);
     CAPTURE(change.gain.chance);
     CAPTURE(change.turn_chance);
@@ -120,13 +85,13 @@ TEST_CASE("an eye that is as it was is found so, whatever its noise") {
 
 TEST_CASE("a light that is .2 % weaker, a dirty ommatidium and a turned eye are found, and told apart") {
   const sim::Scene display = plain_display(calibrated().board());
-  const calib::EyeChange dimmed = calibrated().look(display, 2, [](std::size_t) { return 0.998; });
+  const calib::EyeChange dimmed = look(display, 2, [](std::size_t) { return 0.998; });
   CHECK(dimmed.gain_changed);
   CHECK(dimmed.gain.value == doctest::Approx(-0.002).epsilon(0.3));
   CHECK_FALSE(dimmed.turned);
   CHECK(dimmed.channels.empty());
 
-  const calib::EyeChange dirty = calibrated().look(display, 3, [](std::size_t m) { return m == 27 ? 0.95 : 1.0; });
+  const calib::EyeChange dirty = look(display, 3, [](std::size_t m) { return m == 27 ? 0.95 : 1.0; });
   CHECK_FALSE(dirty.gain_changed);
   REQUIRE(dirty.channels.size() == 1);
   CHECK(dirty.channels.front().channel == 27);
@@ -136,7 +101,7 @@ TEST_CASE("a light that is .2 % weaker, a dirty ommatidium and a turned eye are 
   sim::Scene turned = display;
   const double z = calibrated().board().object.z_mm(calibrated().board().eye);
   turned.surfaces.front().pose.centre_mm.x -= z * std::sin(0.05 * degree);
-  const calib::EyeChange shaken = calibrated().look(turned, 4);
+  const calib::EyeChange shaken = look(turned, 4);
   CHECK(shaken.turned);
   CHECK(shaken.turn_rad[1] == doctest::Approx(0.05 * degree).epsilon(0.3));
   CHECK(shaken.channels.size() <= 2);

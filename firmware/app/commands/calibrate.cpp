@@ -16,6 +16,7 @@
 #include "firmware/app/command.hpp"
 #include "firmware/app/commands/calibrate_check.hpp"
 #include "firmware/app/commands/calibrate_report.hpp"
+#include "firmware/app/commands/light_options.hpp"
 #include "firmware/calibration/attached_bench.hpp"
 #include "firmware/calibration/calibration_run.hpp"
 #include "firmware/calibration/error_budget.hpp"
@@ -247,12 +248,7 @@ Action declare(OptionList& options) {
   options.add("--eye", o->eye, ".eye file that the session goes into; it is made where there is none").required();
   options.add("--plan", o->plan, ".toml file of what is captured (default: see docs/calibration.md)");
   options.add("--scene", o->scene, ".toml file of what a simulated display is like");
-  options
-      .add("--light", o->light.kind,
-           "what shows the patterns: " + choices(light_names()) + " (default: sim for a simulated eye, else display)")
-      .where(one_of(light_names()));
-  options.add("--monitor", o->light.monitor, "number of the display's monitor, from 0");
-  options.flag("--window", o->light.in_window, "a window on it instead of all of it");
+  add_light_options(options, o->light);
   options.add("--picture", o->light.picture, "PNG file that light by hand is asked for with (default: pattern.png)");
   options.settings("calibrate", o->overrides);
   options.add("--seed", o->seed, "of a simulated eye's noise");

@@ -2,36 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
-#include <vector>
+
+#include "firmware/calibration/change_text.hpp"
 
 namespace compueye::firmware {
 namespace {
 
 constexpr double degrees = 180.0 / std::numbers::pi;
 
-double turn_deg(const calib::EyeChange& change) {
-  return std::hypot(change.turn_rad[0], change.turn_rad[1], change.turn_rad[2]) * degrees;
-}
-
 Figures figures_of(const calib::ChangedChannel& each) {
   return {{"ommatidium", each.channel},
           {"change", each.change.value},
           {"sigma", each.change.sigma},
           {"chance", each.change.chance}};
-}
-
-/// "17 by -5.1 %, 20 by +3.0 %"
-std::string list_of(const std::vector<calib::ChangedChannel>& channels) {
-  constexpr std::size_t most = 8;
-  std::string text;
-  for (std::size_t k = 0; k < std::min(channels.size(), most); ++k) {
-    text += fmt::format("{}{} by {:+.1f} %", k == 0 ? "" : ", ", channels[k].channel, 100.0 * channels[k].change.value);
-  }
-  return channels.size() > most ? text + fmt::format(" and {} more", channels.size() - most) : text;
 }
 
 }  // namespace
@@ -59,7 +45,8 @@ Figures check_report(const std::string& file, const EyeCheck& check, const calib
                              {"sigma_z_deg", change.turn_sigma[2] * degrees},
                              {"chance", change.turn_chance}}},
             {"ommatidia", std::move(channels)},
-            {"dark", Figures{{"changed", change.dark_changed},
+            {"dark", Figures{{"judged", change.dark_judged},
+                             {"changed", change.dark_changed},
                              {"value", change.dark.value},
                              {"sigma", change.dark.sigma},
                              {"chance", change.dark.chance}}},
@@ -77,7 +64,9 @@ Figures check_report(const std::string& file, const EyeCheck& check, const calib
   f.say(change.channels.empty() ? "ommatidia: none stands out\n"
                                 : fmt::format("ommatidia: {}\n", list_of(change.channels)));
   f.say(fmt::format("dark levels: {:+.2f} % of white: {}{}\n", 100.0 * change.dark.value,
-                    change.dark_changed ? "changed" : "as they were",
+                    !change.dark_judged   ? "not judged, there was light beside the lamp's"
+                    : change.dark_changed ? "changed"
+                                          : "as they were",
                     change.dark_channels.empty() ? "" : "; ommatidia " + list_of(change.dark_channels)));
   f.say(fmt::format("the rest: {:.2f} % of the light beyond noise (chi^2 {:.2f} a sample): {}\n",
                     100.0 * change.rest_share, change.rest_chi2, change.rest_changed ? "changed" : "as it was"));
@@ -85,24 +74,8 @@ Figures check_report(const std::string& file, const EyeCheck& check, const calib
 }
 
 hal::Result<void> check_verdict(const std::string& file, const calib::EyeChange& change) {
-  if (!change.changed()) return {};
-  std::string what;
-  const auto add = [&](const std::string& part) { what += (what.empty() ? "" : ", ") + part; };
-  if (change.gain_changed) {
-    add(fmt::format("{:+.2f} % of light (brighten or dim the display back, else calibrate again)",
-                    100.0 * change.gain.value));
-  }
-  if (change.turned) {
-    add(fmt::format("{:.2f} deg of turn, or a display that was moved (put it back, else calibrate again)",
-                    turn_deg(change)));
-  }
-  if (!change.channels.empty()) {
-    add(fmt::format("ommatidia {} (clean them, else calibrate again)", list_of(change.channels)));
-  }
-  if (change.dark_changed || !change.dark_channels.empty()) {
-    add("dark levels (keep other light away and the eye as warm as it was, else calibrate again)");
-  }
-  if (change.rest_changed) add("something that is none of gain, pose or single ommatidia (calibrate again)");
+  const std::string what = change_text(change);
+  if (what.empty()) return {};
   return hal::fail(hal::ErrorCode::mismatch, file, "is of an eye that has changed since: " + what);
 }
 

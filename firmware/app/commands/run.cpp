@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "firmware/app/commands/frame_keeper.hpp"
+#include "firmware/app/commands/run_checks.hpp"
 #include "firmware/app/commands/run_outputs.hpp"
 #include "firmware/app/commands/run_report.hpp"
 #include "firmware/app/commands/run_source.hpp"
@@ -110,6 +111,7 @@ class BoardRun {
   PointLadder ladder_;                     // its first eye is the board's, its rungs are empty without stored points
   std::vector<std::string> choice_notes_;  // said when the set-up no longer redraws its line
   std::optional<RunSource> source_;
+  std::unique_ptr<RunChecks> checks_;  // none are asked for: null
   std::unique_ptr<FrameKeeper> keeper_;
   hal::Image conventional_;
   RunReport report_;
@@ -123,6 +125,7 @@ void BoardRun::note(const std::string& sentence) {
 Result<void> BoardRun::prepare() {
   board_ = TRY(load_board(options_.board));
   TRY(options_.overrides.apply(board_));
+  TRY(check_wish(options_, board_));
   folder_ = TRY(claim_outputs(options_));
   if (!options_.record.empty()) TRY(check_new_recording(options_.record));
   TRY(need(options_.sheet.empty() || knows_scene(), "--sheet",
@@ -196,6 +199,7 @@ Result<void> BoardRun::make_ready() {
   if (session_.stop_requested()) {
     return hal::fail(ErrorCode::interrupted, board_.name, "stopped before the first frame");
   }
+  checks_ = TRY(RunChecks::create(options_, board_, *source_, session_));
   return source_->begin_recording(options_, board_, scene_, eye(), session_.clock());
 }
 
@@ -286,6 +290,7 @@ Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, Fram
     keeper_->source_is(source_->source().faults(), source_->source().recovering());
     keeper_->response_is(fit.misfit(), channels ? channels->count() : 0);
     tell();
+    if (checks_) checks_->tell();
     const std::string failure = told ? std::string() : source_->failure();
     if (failure.empty()) return;
     told = true;
@@ -293,6 +298,7 @@ Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, Fram
   });
   report_.summary = pipeline.run(session_.stop_requested());
   watch.reset();
+  if (checks_) checks_->tell_all(report_);
   report_.fit = fit.summary();
   if (channels) report_.channels = channels->detector();
   for (const std::string& sentence : source_->notes()) note(sentence);

@@ -7,6 +7,7 @@
 #include "drivers/recording/replay_source.hpp"
 #include "firmware/app/option_list.hpp"
 #include "firmware/app/session.hpp"
+#include "firmware/calibration/lights.hpp"
 #include "firmware/eye/scene/scene_choice.hpp"
 #include "hal/result.hpp"
 
@@ -29,6 +30,9 @@ struct RunOptions {
   bool stop_if_unrecorded = false;
   std::optional<bool> lambda_from_samples;  ///< false: by rule; absent: as recorded, else by rule
   Overrides overrides;                      ///< iterations, threads, lambda, sigma, distance
+  std::optional<double> check_every_s;      ///< of the eye's own time, > 0; absent: no checks
+  std::optional<double> check_warm_up_s;    ///< >= 0; absent: the session's
+  LightWanted light;                        ///< of checks
   std::string sheet;
   std::string report;
   std::string table;         ///< header, row or both; empty: no table

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "firmware/app/command.hpp"
+#include "firmware/app/commands/light_options.hpp"
 #include "firmware/app/commands/run.hpp"
 #include "firmware/sinks/sink_list.hpp"
 
@@ -84,6 +85,20 @@ void add_solver_options(OptionList& options, RunOptions& o) {
   options.at("--sigma").excludes("--lambda");
 }
 
+void add_check_options(OptionList& options, RunOptions& o) {
+  options
+      .add("--check-every", o.check_every_s,
+           "after so many seconds of pictures show the light of the eye's session to it, and tell when it no longer "
+           "sees as it did then; needs --eye or the board's eye file. No picture comes meanwhile")
+      .excludes("--replay");
+  options
+      .add("--check-warm-up", o.check_warm_up_s,
+           "seconds of white before a check (default: the session's warm-up; 0 for a light that is warm)")
+      .needs("--check-every");
+  add_light_options(options, o.light);
+  for (const char* one : {"--light", "--monitor", "--window"}) options.at(one).needs("--check-every");
+}
+
 void add_output_options(OptionList& options, RunOptions& o) {
   options.add("--out", o.out, "folder for the pictures; made when missing").output(Writes::folder);
   options.add("--format", o.format, sink_formats_text()).where(one_of(sink_formats()));
@@ -101,6 +116,7 @@ Action declare(OptionList& options) {
               "end after so many delivered pictures; 0: run until stopped (default: the board's frames_per_scene)");
   add_scene_options(options, *o);
   add_solver_options(options, *o);
+  add_check_options(options, *o);
   add_output_options(options, *o);
   options.flag("--live", o->lossless, "newest frame wins (default)", false);
   options.flag("--lossless", o->lossless, "every frame is waited for").excludes("--live");
@@ -115,10 +131,12 @@ Action declare(OptionList& options) {
 }  // namespace
 
 Result<void> RunOptions::check() const {
-  constexpr double longest_ms = 1e9, most_frames = 1e15;
+  constexpr double longest_ms = 1e9, most_frames = 1e15, longest_s = 1e8, longest_warm_up_s = 86400.0;
   const std::string beside_owner = "cannot go with " + stdout_owner + ": both would write to the standard output";
   for (const auto& checked :
        {within("--frames", frames, 0, false, most_frames), within("--deadline", deadline_ms, 0, true, longest_ms),
+        within("--check-every", check_every_s, 0, true, longest_s),
+        within("--check-warm-up", check_warm_up_s, 0, false, longest_warm_up_s),
         need(!(deadline_ms && lossless), "--deadline",
              "cannot go with --lossless, where frames wait for as long as it takes; leave one of them out"),
         need(!(deadline_ms && replays() && waits_for_frames()), "--deadline",

@@ -205,7 +205,8 @@ std::string steps_text(const LadderRun& ladder) {
 void tell_frames(Figures& f, const RunReport& report) {
   f.tell(
       "frames: {frames.produced} produced = {frames.delivered} delivered + {frames.dropped:sum} dropped"
-      "[ ({frames.dropped})][, {frames.estimated} of them by estimate]; {pacing}; ended: {ending} after "
+      "[ ({frames.dropped})][, {frames.estimated} of them by estimate][ + {frames.checked} of checks]; {pacing}; "
+      "ended: {ending} after "
       "{wall_s:duration}[, {recovering_s:duration} of it without frames, to get the eye back]\n");
   if (report.deadline) f.say(report.deadline->sentence() + "\n");
   if (report.ladder) f.say(report.ladder->sentence() + "\n" + steps_text(*report.ladder) + "\n");
@@ -226,6 +227,11 @@ void tell_frames(Figures& f, const RunReport& report) {
         "misfit: residual {fit.residual_over_noise:3} times what noise explains, and no picture's is below "
         "{fit.least_over_noise:3}, in {fit.misfits} of {fit.frames} frames looked at: do board, distance or "
         "calibration fit?\n");
+  }
+  if (report.checks) {
+    f.tell(
+        "checks: {checks.looks}[, {checks.could_not_look} of which could not look][, {checks.changes:# change} told]; "
+        "the last says: {checks.verdict}\n");
   }
   if (!report.files.empty()) f.say("written: " + fmt::format("{}", fmt::join(report.files, ", ")) + "\n");
   const std::string counters = hal::text_of(report.summary.source_counters);
@@ -329,6 +335,7 @@ Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& 
             {"last", last_figures(report)},
             {"fit", fit_figures(report.fit)},
             {"left_out", left_out_figures(report.channels)},
+            {"checks", report.checks},
             {"files", report.files},
             {"notes", report.notes}};
   if (s.error) f.add("error", figures_of(*s.error));

@@ -46,6 +46,7 @@ struct RunReport {
   std::size_t measured = 0;
   std::optional<PictureQuality> last_quality;  ///< of the last delivered frame
   std::optional<PictureQuality> conventional;  ///< of one frame
+  std::optional<Figures> checks;               ///< of the eye, where they were asked for
   std::vector<std::string> files;              ///< what was written
   std::vector<std::string> notes;
 };

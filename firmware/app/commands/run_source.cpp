@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "drivers/recording/recording_file.hpp"
+#include "firmware/calibration/simulated_bench.hpp"
 #include "firmware/eye/settings/board_lines.hpp"
-#include "firmware/eye/source_list.hpp"
 #include "firmware/files/output_target.hpp"
 #include "firmware/text/number_text.hpp"
 #include "firmware/text/words.hpp"
@@ -95,14 +95,21 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
     TRY(check_fits(replay->describe(), board, options.replay));
     made.replay_ = replay.get();
     made.mismatch_ = mismatch_of(replay->recording(), board);
-    made.source_ = std::move(replay);
+    made.eye_.source = std::move(replay);
     return made;
   }
   EyeWanted wanted{scene, options.seed, options.lossless, std::nullopt, progress};
   // Without a limit the frames read ahead of the last one would be made only to be thrown away.
-  if (options.lossless && frames > 0) wanted.frame_limit = frames;
-  made.source_ = TRY(board_source(board, std::move(wanted), clock));
+  if (options.lossless && frames > 0 && !options.check_every_s) wanted.frame_limit = frames;
+  if (options.check_every_s && board.source.simulated()) {
+    wanted.display = TRY(display_of_patterns(board, plain_display(board), options.seed));
+  }
+  made.eye_ = TRY(board_eye(board, std::move(wanted), clock));
   return made;
+}
+
+void RunSource::add_checks(CheckSettings settings, hal::Clock& clock) {
+  checked_ = std::make_unique<CheckedSource>(std::move(settings), *eye_.source, clock);
 }
 
 Result<void> RunSource::begin_recording(const RunOptions& options, const Board& board, const sim::Scene& scene,
@@ -110,7 +117,7 @@ Result<void> RunSource::begin_recording(const RunOptions& options, const Board& 
   if (options.record.empty()) return {};
   recorder_ = TRY(with_recorder({options.record, scene.name, options.scene.seed, options.seed, options.lossless,
                                  options.stop_if_unrecorded, picture_lines(eye)},
-                                board, *source_, clock));
+                                board, source(), clock));
   return {};
 }
 
@@ -124,11 +131,12 @@ std::optional<double> RunSource::recorded_lambda(const ReadyEye& eye) const {
 
 hal::SampleSource& RunSource::source() noexcept {
   if (recorder_) return *recorder_;
-  return *source_;
+  if (checked_) return *checked_;
+  return *eye_.source;
 }
 
 std::string RunSource::name() const {
-  const hal::SourceDescription& d = source_->describe();
+  const hal::SourceDescription& d = eye_.source->describe();
   return d.backend + " " + d.serial + (replay_ != nullptr ? " from " + replay_->recording().place() : std::string());
 }
 

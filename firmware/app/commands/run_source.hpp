@@ -9,8 +9,10 @@
 #include "drivers/recording/recording_source.hpp"
 #include "drivers/recording/replay_source.hpp"
 #include "firmware/app/commands/run.hpp"
+#include "firmware/calibration/checked_source.hpp"
 #include "firmware/eye/board.hpp"
 #include "firmware/eye/ready_eye.hpp"
+#include "firmware/eye/source_list.hpp"
 #include "hal/clock.hpp"
 #include "hal/sample_source.hpp"
 #include "sim/scene/scene.hpp"
@@ -48,17 +50,21 @@ class RunSource {
   [[nodiscard]] static hal::Result<RunSource> make(const RunOptions& options, const Board& board,
                                                    const sim::Scene& scene, std::uint64_t frames, hal::Clock& clock,
                                                    const recon::Progress& progress);
+  /// Frames of checks are taken out of what is run and recorded. Before a recording is begun.
+  void add_checks(CheckSettings settings, hal::Clock& clock);
+
   /// Where the options ask for a recording, its file is begun, with the lambda and the measured response that is run
   /// with. Errors: those of with_recorder().
   [[nodiscard]] hal::Result<void> begin_recording(const RunOptions& options, const Board& board,
                                                   const sim::Scene& scene, const ReadyEye& eye, hal::Clock& clock);
 
   /// What is tried before the run; nothing of it is recorded.
-  [[nodiscard]] hal::SampleSource& unrecorded() noexcept { return *source_; }
+  [[nodiscard]] hal::SampleSource& unrecorded() noexcept { return *eye_.source; }
+  [[nodiscard]] const BoardEye& eye() const noexcept { return eye_; }
   /// What is run.
   [[nodiscard]] hal::SampleSource& source() noexcept;
   /// Of the device, which may be behind a recording.
-  [[nodiscard]] const std::string& serial() const noexcept { return source_->describe().serial; }
+  [[nodiscard]] const std::string& serial() const noexcept { return eye_.source->describe().serial; }
   /// "sim SIM-8X8", "replay CE-1 from eye.rec".
   [[nodiscard]] std::string name() const;
   /// Where the recording's board was another one, a sentence; empty: it was not, or there is no recording.
@@ -72,6 +78,11 @@ class RunSource {
   /// did. From any thread.
   [[nodiscard]] std::string failure() const;
 
+  /// What a check saw, from any thread.
+  [[nodiscard]] std::optional<CheckLook> next_look() {
+    return checked_ ? checked_->next_look() : std::optional<CheckLook>();
+  }
+
   // After the run:
   /// What there is to say about the recording that was read or written, a sentence each.
   [[nodiscard]] std::vector<std::string> notes() const;
@@ -81,9 +92,10 @@ class RunSource {
  private:
   RunSource() = default;
 
-  std::unique_ptr<hal::SampleSource> source_;
-  const recording::ReplaySource* replay_ = nullptr;  // source_, if that is what it is
+  BoardEye eye_;                                     // neither of both: a recording
+  const recording::ReplaySource* replay_ = nullptr;  // the source, if that is what it is
   std::string mismatch_;
+  std::unique_ptr<CheckedSource> checked_;
   std::unique_ptr<recording::RecordingSource> recorder_;
 };
 

@@ -1,0 +1,205 @@
+// A calibrated eye runs, and is looked at meanwhile: in virtual time, with what happens to eyes and to scenes.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/calibration/check_diary.hpp"
+#include "firmware/calibration/checked_source.hpp"
+#include "firmware/eye/simulated_board.hpp"
+#include "sim/scene/scene.hpp"
+#include "sim/simulated_display.hpp"
+#include "tests/firmware/calibrated_eye.hpp"
+
+using namespace compueye;
+using namespace compueye::firmware;
+
+namespace {
+
+constexpr std::int64_t second = 1'000'000'000;
+
+/// An eye whose light over the dark is changed on its way, with that of a scene beside it, in LSB, both by device time.
+class EyeInAScene final : public hal::SampleSource {
+ public:
+  using OverTime = std::function<double(std::int64_t t_ns, std::size_t m)>;
+  EyeInAScene(hal::SampleSource& eye, double dark_lsb) : eye_(eye), dark_lsb_(dark_lsb) {}
+
+  OverTime gain = [](std::int64_t, std::size_t) { return 1.0; };
+  OverTime scene_lsb = [](std::int64_t, std::size_t) { return 0.0; };
+  std::function<std::uint64_t(std::int64_t t_ns)> lost = [](std::int64_t) { return std::uint64_t{0}; };
+
+ private:
+  const hal::SourceDescription& do_describe() const noexcept override { return eye_.describe(); }
+  hal::Result<void> do_start() override { return eye_.start(); }
+  hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override {
+    auto block = eye_.read(deadline_ns);
+    if (!block) return block;
+    outages_ = lost(block->t_ns);
+    codes_.assign(block->codes.begin(), block->codes.end());
+    for (std::size_t m = 0; m < codes_.size(); ++m) {
+      const double light = codes_[m] - dark_lsb_ + scene_lsb(block->t_ns, m);
+      codes_[m] = static_cast<std::int32_t>(std::lround(dark_lsb_ + gain(block->t_ns, m) * light));
+    }
+    block->codes = codes_;
+    return block;
+  }
+  void do_stop() noexcept override { eye_.stop(); }
+  hal::FrameAccount do_account() const noexcept override { return eye_.account(); }
+  std::uint64_t do_outages() const noexcept override { return outages_; }
+
+  hal::SampleSource& eye_;
+  double dark_lsb_;
+  std::uint64_t outages_ = 0;
+  std::vector<std::int32_t> codes_;
+};
+
+/// A board's eye before a scene, which the display of its session covers for checks, read in virtual time.
+struct Running {
+  const Board& board = test::CalibratedEye::once().board();
+  hal::VirtualClock clock;
+  std::unique_ptr<sim::SimulatedEye> eye;
+  std::unique_ptr<EyeInAScene> changed;
+  std::unique_ptr<CheckedSource> source;
+  CheckDiary diary;
+  std::vector<std::string> told;
+  std::uint64_t delivered = 0;
+  std::vector<double> means;  // of the frames that were delivered
+
+  Running(std::uint64_t seed, Around around) : diary(test::CalibratedEye::once().check(), around) {
+    const hal::Image black(board.object.rows, board.object.cols);
+    auto settings = simulated_eye_settings(board, sim::scene_on(board.object, "black", black), seed);
+    settings.frame_rate_hz = board.source.frame_rate_hz;
+    settings.display = display_of_patterns(board, plain_display(board), seed).value();
+    eye = sim::SimulatedEye::create(std::move(settings), clock).value();
+    changed = std::make_unique<EyeInAScene>(*eye, board.sensor.dark_level_lsb);
+    CheckSettings checks;
+    checks.every_ns = second / 2;
+    checks.plan = diary.check().plan();
+    checks.schedule = diary.check().schedule(around);
+    checks.light = [this]() -> hal::Result<std::unique_ptr<hal::Illuminator>> {
+      return std::make_unique<sim::SimulatedDisplay>(*eye, clock);
+    };
+    source = std::make_unique<CheckedSource>(std::move(checks), *changed, clock);
+  }
+
+  void run(std::int64_t for_ns) {
+    REQUIRE(source->start().has_value());
+    std::uint64_t next = 0, jumped = 0;
+    while (clock.now_ns() < for_ns) {
+      const auto block = source->read(clock.now_ns() + second / 10);
+      while (auto look = source->next_look()) {
+        if (std::string news = diary.enter(*look); !news.empty()) told.push_back(std::move(news));
+      }
+      if (!block) {
+        REQUIRE(block.error().code == hal::ErrorCode::timeout);
+        REQUIRE(source->withheld());
+        continue;
+      }
+      jumped += block->frame - next;
+      next = block->frame + 1;
+      ++delivered;
+      means.push_back(0.0);
+      for (const std::int32_t code : block->codes) {
+        means.back() += static_cast<double>(code) / static_cast<double>(block->codes.size());
+      }
+      const hal::FrameAccount account = source->account();
+      REQUIRE(account.balanced());
+      REQUIRE(account.delivered == delivered);
+      REQUIRE(account.checked + account.total_dropped() == jumped);
+    }
+    source->stop();
+    CHECK(source->account().balanced());
+    CHECK(source->account().delivered == delivered);
+  }
+};
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("an eye that is as it was is looked at again and again, and no frame of a check is delivered") {
+  Running eye(5, Around::dark);
+  eye.run(6 * second);
+  CHECK(eye.diary.looks() >= 3);
+  CHECK(eye.diary.looks() <= 7);
+  CHECK(eye.diary.could_not_look() == 0);
+  CHECK(eye.told.empty());
+  REQUIRE(eye.diary.last().has_value());
+  CHECK_FALSE(eye.diary.last()->changed());
+  CHECK(eye.source->account().checked > 100);
+  // Before a black scene white would be seen from far.
+  CHECK(*std::max_element(eye.means.begin(), eye.means.end()) < eye.board.sensor.dark_level_lsb + 3.0);
+}
+
+TEST_CASE("a gain that changes by 1 % while the eye runs is told once, and once more when it is back") {
+  Running eye(6, Around::dark);
+  eye.changed->gain = [](std::int64_t t_ns, std::size_t) {
+    return t_ns > 2 * second && t_ns < 5 * second ? 0.99 : 1.0;
+  };
+  eye.run(8 * second);
+  CHECK(eye.diary.looks() >= 4);
+  CHECK(eye.diary.changes() == 1);
+  REQUIRE(eye.told.size() == 2);
+  CHECK((says(eye.told.front(), "-1.0") || says(eye.told.front(), "-0.9")));
+  CHECK(says(eye.told.front(), "of light"));
+  CHECK(says(eye.told.back(), "again"));
+  CHECK_FALSE(eye.diary.last()->changed());
+}
+
+TEST_CASE("a scene that stands still beside the lamp is taken off, and dark levels are not judged in it") {
+  Running eye(7, Around::scene);
+  eye.changed->scene_lsb = [](std::int64_t, std::size_t m) { return 60.0 + 10.0 * static_cast<double>(m % 7); };
+  eye.run(4 * second);
+  CHECK(eye.diary.looks() >= 2);
+  CHECK(eye.diary.could_not_look() == 0);
+  CHECK(eye.told.empty());
+  REQUIRE(eye.diary.last().has_value());
+  CHECK_FALSE(eye.diary.last()->dark_judged);
+
+  Running dirty(8, Around::scene);
+  dirty.changed->scene_lsb = eye.changed->scene_lsb;
+  dirty.changed->gain = [](std::int64_t, std::size_t m) { return m == 27 ? 0.95 : 1.0; };
+  dirty.run(4 * second);
+  REQUIRE(dirty.told.size() == 1);
+  CHECK(says(dirty.told.front(), "ommatidia 27 by"));
+}
+
+TEST_CASE("while a scene moves a check cannot look, which is told once, and frames go on") {
+  Running eye(9, Around::scene);
+  eye.changed->scene_lsb = [](std::int64_t t_ns, std::size_t m) {
+    const double seconds = static_cast<double>(std::min(t_ns, 4 * second)) * 1e-9;
+    return 100.0 + 15.0 * seconds * (m % 2 == 0 ? 1.0 : 0.2);
+  };
+  eye.run(8 * second);
+  CHECK(eye.diary.could_not_look() >= 2);
+  CHECK(eye.diary.looks() > eye.diary.could_not_look());  // it stands still in the end
+  CHECK(eye.diary.changes() == 0);
+  REQUIRE(eye.told.size() == 1);
+  CHECK(says(eye.told.front(), "could not look: scene: changed"));
+  CHECK(eye.delivered > 200);
+}
+
+TEST_CASE("an outage, and a light that fails, cost checks and no run") {
+  Running lost(10, Around::dark);
+  lost.changed->lost = [](std::int64_t t_ns) { return t_ns > 800'000'000 ? 1U : 0U; };
+  lost.run(4 * second);
+  CHECK(lost.diary.looks() >= 2);
+  CHECK(lost.told.empty());
+
+  Running dim(11, Around::dark);
+  dim.changed->gain = [](std::int64_t, std::size_t) { return 0.001; };
+  dim.run(3 * second);
+  CHECK(dim.diary.looks() >= 2);
+  CHECK(dim.diary.could_not_look() == dim.diary.looks());
+  REQUIRE(dim.told.size() == 1);
+  CHECK(says(dim.told.front(), "could not look: light: gives"));
+}
