@@ -12,12 +12,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path root = compueye::test::source_path();
+const fs::path text_root = compueye::test::source_path();
 
 template <typename Check>
 void check_every_file(Check check) {
   std::vector<Violation> violations;
-  const auto files = project_files(root);
+  const auto files = project_files(text_root);
   CHECK(files.size() > 20);
   for (const std::string& file : files) {
     for (auto& violation : check(file)) violations.push_back(std::move(violation));
@@ -28,11 +28,11 @@ void check_every_file(Check check) {
 }  // namespace
 
 TEST_CASE("no file names a machine's own folder or a package mirror") {
-  check_every_file([](const std::string& file) { return check_places(file, read_text(root / file)); });
+  check_every_file([](const std::string& file) { return check_places(file, read_text(text_root / file)); });
 }
 
 TEST_CASE("no source or script exceeds 400 lines") {
-  check_every_file([](const std::string& file) { return check_length(file, read_text(root / file)); });
+  check_every_file([](const std::string& file) { return check_length(file, read_text(text_root / file)); });
 }
 
 TEST_CASE("every folder is named after what is inside") {
