@@ -39,7 +39,8 @@ Result<void> CheckedSource::do_start() {
   scene_from_ns_ = std::numeric_limits<std::int64_t>::min();
   passed_ns_ = 0;
   outages_ = delivered_ = 0;
-  due_ = withheld_ = false;
+  due_ = withheld_ = checking_ = false;
+  checked_ = 0;
   return source_.start();
 }
 
@@ -53,9 +54,11 @@ Result<hal::SampleBlock> CheckedSource::do_read(std::int64_t deadline_ns) {
     const std::int64_t begun_ns = frame_time_.begun_ns(block->t_ns, block->flags.time_ok, now_ns);
     if (is_of_scene(*block, begun_ns)) {
       ++delivered_;
+      checking_ = false;
       return block;
     }
     withheld_ = true;
+    ++checked_;
     if (machine_) {
       if (auto looked = look(*block); !looked) end(tl::unexpected(std::move(looked.error())));
     } else if (light_ != nullptr && now_ns - tried_ns_ >= between_tries_ns) {
@@ -87,6 +90,7 @@ void CheckedSource::pass_time(const hal::SampleBlock& block) noexcept {
 }
 
 void CheckedSource::begin() {
+  checking_ = true;
   const hal::SourceDescription& eye = source_.describe();
   passed_ns_ = 0;
   tries_ = 0;

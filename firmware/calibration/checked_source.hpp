@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -51,7 +52,12 @@ class CheckedSource final : public hal::SampleSource {
   CheckedSource& operator=(const CheckedSource&) = delete;
   ~CheckedSource() override { stop(); }
 
-  /// The oldest one that was not asked for, from any thread.
+  // From any thread:
+  /// Frames of checks since start().
+  [[nodiscard]] const std::atomic<std::uint64_t>& checked() const noexcept { return checked_; }
+  /// From a check's beginning to the next frame of the scene.
+  [[nodiscard]] const std::atomic<bool>& checking() const noexcept { return checking_; }
+  /// The oldest one that was not asked for.
   [[nodiscard]] std::optional<CheckLook> next_look();
 
  private:
@@ -84,6 +90,8 @@ class CheckedSource final : public hal::SampleSource {
   std::int64_t last_ns_ = 0, passed_ns_ = 0;  // device time of the last frame, and what passed since the last check
   std::uint32_t config_id_ = 0;
   std::uint64_t outages_ = 0, delivered_ = 0;
+  std::atomic<std::uint64_t> checked_ = 0;
+  std::atomic<bool> checking_ = false;
   bool due_ = false, withheld_ = false;
 
   std::optional<calib::SessionMachine> machine_;  // while it looks

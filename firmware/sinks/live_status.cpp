@@ -8,16 +8,15 @@ namespace compueye::firmware {
 
 void LiveStatus::published(std::uint64_t frame, std::int64_t age_ns, bool late) noexcept {
   constexpr auto relaxed = std::memory_order_relaxed;
-  if (frame > next_frame_.load(relaxed)) gaps_.fetch_add(1, relaxed);
-  next_frame_.store(frame + 1, relaxed);
-  delivered_.fetch_add(1, relaxed);
+  const std::uint64_t numbered = frame + 1, published = delivered_.fetch_add(1, relaxed) + 1;
+  // Some of the last check may be counted whose numbers are still to come: never too few, and right when it is over.
+  const std::uint64_t known = published + (checked_ == nullptr ? 0 : checked_->load(relaxed));
+  if (numbered > known && numbered - known > dropped_.load(relaxed)) {
+    dropped_.store(numbered - known, relaxed);
+    gaps_.fetch_add(1, relaxed);
+  }
   late_.fetch_add(late ? 1 : 0, relaxed);
   age_ns_.store(age_ns, relaxed);
-}
-
-std::uint64_t LiveStatus::dropped() const noexcept {
-  const std::uint64_t published = delivered(), numbered = next_frame_.load(std::memory_order_relaxed);
-  return numbered > published ? numbered - published : 0;
 }
 
 void LiveStatus::source_is(std::uint64_t faults, bool recovering) noexcept {
@@ -47,8 +46,8 @@ std::string_view StatusLine::print(std::int64_t now_ns, std::span<char> room) no
   if (room.empty() || (delivered == 0 && !silent && !recovering)) return {};
   char now[96];
   if (silent || recovering) {
-    std::snprintf(now, sizeof now, "%ssilent %.1f s", recovering ? "recovering, " : "",
-                  static_cast<double>(silent_ns) * 1e-9);
+    const char* why = recovering ? "recovering, " : status_->checking() ? "checking the eye, " : "";
+    std::snprintf(now, sizeof now, "%ssilent %.1f s", why, static_cast<double>(silent_ns) * 1e-9);
   } else {
     char rate[32] = "-";
     if (rate_hz_ >= 0.0) std::snprintf(rate, sizeof rate, "%.1f", rate_hz_);

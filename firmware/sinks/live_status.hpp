@@ -11,6 +11,13 @@ namespace compueye::firmware {
 /// be mixed with those of the next.
 class LiveStatus {
  public:
+  /// Frames that are kept from the pictures for checks of the eye, and whether one goes on: counted by whoever reads
+  /// the source. Both must outlive this; before the first frame.
+  void checks_are_counted_by(const std::atomic<std::uint64_t>& frames, const std::atomic<bool>& go_on) noexcept {
+    checked_ = &frames;
+    checking_ = &go_on;
+  }
+
   /// A frame was published; `frame` is its number, from 0, `age_ns` from the start of its exposure.
   void published(std::uint64_t frame, std::int64_t age_ns, bool late) noexcept;
 
@@ -30,14 +37,16 @@ class LiveStatus {
   [[nodiscard]] std::uint64_t delivered() const noexcept { return delivered_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t late() const noexcept { return late_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::int64_t age_ns() const noexcept { return age_ns_.load(std::memory_order_relaxed); }
-  /// Frames up to the last published one that became no picture, whatever the reason.
-  [[nodiscard]] std::uint64_t dropped() const noexcept;
-  /// Times that frames were missing between two published ones.
+  /// Frames up to the last published one that became no picture, whatever the reason, but for those of checks.
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+  /// Whether frames are kept from the pictures now, for a check.
+  [[nodiscard]] bool checking() const noexcept { return checking_ != nullptr && *checking_; }
+  /// Times that such were missing between two published ones.
   [[nodiscard]] std::uint64_t gaps() const noexcept { return gaps_.load(std::memory_order_relaxed); }
 
  private:
   std::atomic<std::uint64_t> delivered_{0};
-  std::atomic<std::uint64_t> next_frame_{0};
+  std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::uint64_t> late_{0};
   std::atomic<std::uint64_t> gaps_{0};
   std::atomic<std::int64_t> age_ns_{0};
@@ -45,6 +54,8 @@ class LiveStatus {
   std::atomic<bool> recovering_{false};
   std::atomic<double> misfit_{0.0};
   std::atomic<std::uint64_t> left_out_{0};
+  const std::atomic<std::uint64_t>* checked_ = nullptr;
+  const std::atomic<bool>* checking_ = nullptr;
 };
 
 /// A LiveStatus as a line of text, with the rate since about a second ago. One a reader.
@@ -53,9 +64,9 @@ class StatusLine {
   explicit StatusLine(const LiveStatus& status) noexcept : status_(&status) {}
 
   /// "24.8/s, age 34 ms, 2 dropped in 1 gap, 0 late, 0 faults": into `room`, cut to it; "-/s" within the first second.
-  /// While no frame comes "recovering, silent 1.2 s" instead of rate and age: from a second on, and from three times
-  /// what the frame before took. Nothing before the first frame as long as that is no silence. A
-  /// response that does not fit ends it: ", residual 94 x noise". Does not allocate.
+  /// While no frame comes "recovering, silent 1.2 s" instead of rate and age, or "checking the eye, silent 1.2 s": from
+  /// a second on, and from three times what the frame before took. Nothing before the first frame as long as that is no
+  /// silence. A response that does not fit ends it: ", residual 94 x noise". Does not allocate.
   [[nodiscard]] std::string_view print(std::int64_t now_ns, std::span<char> room) noexcept;
 
  private:

@@ -113,6 +113,7 @@ struct Running {
       REQUIRE(account.balanced());
       REQUIRE(account.delivered == delivered);
       REQUIRE(account.checked + account.total_dropped() == jumped);
+      REQUIRE(account.checked == source->checked());
     }
     source->stop();
     CHECK(source->account().balanced());

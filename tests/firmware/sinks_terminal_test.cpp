@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "firmware/sinks/terminal_sink.hpp"
 #include "hal/clock.hpp"
 #include "tests/firmware/sinks_terminal.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
@@ -253,7 +255,6 @@ TEST_CASE("the line below the picture says how the run goes, within the terminal
 }
 
 TEST_CASE("the line says that no frame comes, and for how long, when that is longer than usual") {
-  constexpr std::int64_t ms = 1'000'000;
   LiveStatus status;
   StatusLine line(status);
   std::array<char, 160> room{};
@@ -271,6 +272,30 @@ TEST_CASE("the line says that no frame comes, and for how long, when that is lon
   CHECK(line.print(9200 * ms, room).find("silent") == std::string::npos);
   status.source_is(2, true);
   CHECK(line.print(9300 * ms, room) == "recovering, silent 0.1 s, 0 dropped in 0 gaps, 0 late, 2 faults");
+}
+
+TEST_CASE("frames of checks are none that were dropped, and the line says that the eye is looked at") {
+  LiveStatus status;
+  std::atomic<std::uint64_t> checked = 0;
+  std::atomic<bool> checking = false;
+  status.checks_are_counted_by(checked, checking);
+  StatusLine line(status);
+  std::array<char, 160> room{};
+  const auto drops = [&] { return std::pair(status.dropped(), status.gaps()); };
+  status.published(0, ms, false);
+  status.published(3, ms, false);
+  CHECK(line.print(0, room).ends_with("2 dropped in 1 gap, 0 late, 0 faults"));
+  checking = true;
+  checked = 40;  // the last frames of the scene are still on their way
+  status.published(4, ms, false);
+  CHECK(drops() == std::pair(std::uint64_t{2}, std::uint64_t{1}));
+  CHECK(line.print(100 * ms, room).find("silent") == std::string::npos);
+  CHECK(line.print(4100 * ms, room) == "checking the eye, silent 4.0 s, 2 dropped in 1 gap, 0 late, 0 faults");
+  checking = false;
+  status.published(45, ms, false);
+  CHECK(drops() == std::pair(std::uint64_t{2}, std::uint64_t{1}));
+  status.published(47, ms, false);
+  CHECK(drops() == std::pair(std::uint64_t{3}, std::uint64_t{2}));
 }
 
 TEST_CASE("the line says that the response does not fit as long as it does not") {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -38,6 +39,10 @@ class FrameKeeper final : public FrameObserver {
   /// So far.
   [[nodiscard]] std::uint64_t delivered() const noexcept { return status_.delivered(); }
   [[nodiscard]] const LiveStatus& status() const noexcept { return status_; }
+  /// LiveStatus::checks_are_counted_by().
+  void checks_are_counted_by(const std::atomic<std::uint64_t>& frames, const std::atomic<bool>& go_on) noexcept {
+    status_.checks_are_counted_by(frames, go_on);
+  }
   /// LiveStatus::source_is().
   void source_is(std::uint64_t faults, bool recovering) noexcept { status_.source_is(faults, recovering); }
   /// LiveStatus::misfit_is() and left_out_are().

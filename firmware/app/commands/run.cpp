@@ -263,6 +263,7 @@ PipelineSettings BoardRun::pipeline_settings() const {
 
 Result<void> BoardRun::run_pipeline() {
   keeper_ = std::make_unique<FrameKeeper>(hal::FrameFormat{truth_.rows, truth_.cols}, frames());
+  if (const auto* checks = source_->checks()) keeper_->checks_are_counted_by(checks->checked(), checks->checking());
   const auto sinks = make_sinks(options_, session_, keeper_->status(), report_.files);
   const ScreenLease lease(session_);
   if (ladder_.rungs.empty()) {

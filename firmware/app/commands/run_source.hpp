@@ -78,6 +78,8 @@ class RunSource {
   /// did. From any thread.
   [[nodiscard]] std::string failure() const;
 
+  /// Nothing: no check was asked for.
+  [[nodiscard]] const CheckedSource* checks() const noexcept { return checked_.get(); }
   /// What a check saw, from any thread.
   [[nodiscard]] std::optional<CheckLook> next_look() {
     return checked_ ? checked_->next_look() : std::optional<CheckLook>();
