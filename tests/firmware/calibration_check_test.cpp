@@ -5,53 +5,26 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <numbers>
 #include <vector>
 
 #include "firmware/calibration/calibration_run.hpp"
 #include "firmware/calibration/eye_check.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
 #include "tests/firmware/calibrated_eye.hpp"
+#include "tests/firmware/eye_in_a_scene.hpp"
 #include "tests/hal/error_check.hpp"
+#include "tests/hal/units.hpp"
 
 using namespace compueye;
 using namespace compueye::firmware;
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
+using compueye::test::deg;
 
 bool go_on(const calib::SessionProgress&) {
   return true;
 }
-
-/// An eye whose light over the dark is changed on its way.
-class ChangedEye final : public hal::SampleSource {
- public:
-  ChangedEye(hal::SampleSource& eye, double dark_lsb, std::function<double(std::size_t)> factor)
-      : eye_(eye), dark_lsb_(dark_lsb), factor_(std::move(factor)) {}
-
- private:
-  const hal::SourceDescription& do_describe() const noexcept override { return eye_.describe(); }
-  hal::Result<void> do_start() override { return eye_.start(); }
-  hal::Result<hal::SampleBlock> do_read(std::int64_t deadline_ns) override {
-    auto block = eye_.read(deadline_ns);
-    if (!block) return block;
-    codes_.assign(block->codes.begin(), block->codes.end());
-    for (std::size_t m = 0; m < codes_.size(); ++m) {
-      codes_[m] = static_cast<std::int32_t>(std::lround(dark_lsb_ + factor_(m) * (codes_[m] - dark_lsb_)));
-    }
-    block->codes = codes_;
-    return block;
-  }
-  void do_stop() noexcept override { eye_.stop(); }
-  hal::FrameAccount do_account() const noexcept override { return eye_.account(); }
-
-  hal::SampleSource& eye_;
-  double dark_lsb_;
-  std::function<double(std::size_t)> factor_;
-  std::vector<std::int32_t> codes_;
-};
 
 const test::CalibratedEye& calibrated() {
   return test::CalibratedEye::once();
@@ -63,7 +36,8 @@ calib::EyeChange look(
   const EyeCheck check = calibrated().check();
   const Board& board = calibrated().board();
   const SimulatedBench bench = SimulatedBench::create(board, display, seed).value();
-  ChangedEye eye(*bench.eye, board.sensor.dark_level_lsb, factor);
+  test::EyeInAScene eye(*bench.eye, board.sensor.dark_level_lsb);
+  eye.gain = [&](std::int64_t, std::size_t m) { return factor(m); };
   const auto captures =
       take_captures(check.plan(), check.schedule(), {eye, *bench.display, *bench.clock}, go_on).value();
   return check.judge(captures).value();
@@ -100,10 +74,10 @@ TEST_CASE("a light that is .2 % weaker, a dirty ommatidium and a turned eye are 
   // The eye shakes its head by .05 degrees: the display goes the other way, about the centre of the dome.
   sim::Scene turned = display;
   const double z = calibrated().board().object.z_mm(calibrated().board().eye);
-  turned.surfaces.front().pose.centre_mm.x -= z * std::sin(0.05 * degree);
+  turned.surfaces.front().pose.centre_mm.x -= z * std::sin(0.05 * deg);
   const calib::EyeChange shaken = look(turned, 4);
   CHECK(shaken.turned);
-  CHECK(shaken.turn_rad[1] == doctest::Approx(0.05 * degree).epsilon(0.3));
+  CHECK(shaken.turn_rad[1] == doctest::Approx(0.05 * deg).epsilon(0.3));
   CHECK(shaken.channels.size() <= 2);
 }
 
