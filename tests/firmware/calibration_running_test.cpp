@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,22 @@ namespace {
 using compueye::test::EyeInAScene;
 using compueye::test::second;
 
+/// A light that tells when it was taken away.
+class LeavingLight final : public hal::Illuminator {
+ public:
+  LeavingLight(sim::SimulatedEye& eye, hal::Clock& clock, std::int64_t& gone_ns)
+      : light_(eye, clock), clock_(clock), gone_ns_(gone_ns) {}
+  ~LeavingLight() override { gone_ns_ = clock_.now_ns(); }
+  [[nodiscard]] const hal::IlluminatorDescription& describe() const noexcept override { return light_.describe(); }
+  [[nodiscard]] hal::Result<std::int64_t> show(std::span<const float> picture) override { return light_.show(picture); }
+  [[nodiscard]] hal::Result<std::int64_t> off() override { return light_.off(); }
+
+ private:
+  sim::SimulatedDisplay light_;
+  hal::Clock& clock_;
+  std::int64_t& gone_ns_;
+};
+
 /// A board's eye before a scene, which the display of its session covers for checks, read in virtual time.
 struct Running {
   const Board& board = test::CalibratedEye::once().board();
@@ -38,7 +55,8 @@ struct Running {
   CheckDiary diary;
   std::vector<std::string> told;
   std::uint64_t delivered = 0;
-  std::vector<double> means;  // of the frames that were delivered
+  std::int64_t gone_ns = -second;  // of the last check's light
+  std::vector<double> means;       // of the frames that were delivered
 
   Running(std::uint64_t seed, Around around) : diary(test::CalibratedEye::once().check(), around) {
     const hal::Image black(board.object.rows, board.object.cols);
@@ -52,7 +70,7 @@ struct Running {
     checks.plan = diary.check().plan();
     checks.schedule = diary.check().schedule(around);
     checks.light = [this]() -> hal::Result<std::unique_ptr<hal::Illuminator>> {
-      return std::make_unique<sim::SimulatedDisplay>(*eye, clock);
+      return std::make_unique<LeavingLight>(*eye, clock, gone_ns);
     };
     source = std::make_unique<CheckedSource>(std::move(checks), *changed, clock);
   }
@@ -70,6 +88,8 @@ struct Running {
         REQUIRE(source->withheld());
         continue;
       }
+      // What shines on while it goes out is no scene.
+      REQUIRE(block->t_ns >= gone_ns + 5 * test::ms);
       jumped += block->frame - next;
       next = block->frame + 1;
       ++delivered;
