@@ -61,22 +61,13 @@ std::vector<Cone> cones_of(double acceptance_rad, double soft_edge) {
   return cones;
 }
 
-Vec3 normalised(const Vec3& v) {
-  const double length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-  return {v.x / length, v.y / length, v.z / length};
-}
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 /// The unit vector `axis` tilted by small angles about two directions across it.
 Vec3 tilted(const Vec3& axis, double about_one_rad, double about_other_rad) {
   const Vec3 up = std::abs(axis.y) < 0.7 ? Vec3{0.0, 1.0, 0.0} : Vec3{1.0, 0.0, 0.0};
-  const Vec3 one = normalised(cross(up, axis)), other = cross(axis, one);
-  return normalised({axis.x + about_one_rad * one.x + about_other_rad * other.x,
-                     axis.y + about_one_rad * one.y + about_other_rad * other.y,
-                     axis.z + about_one_rad * one.z + about_other_rad * other.z});
+  const Vec3 one = unit(cross(up, axis)), other = cross(axis, one);
+  return hal::unit({axis.x + about_one_rad * one.x + about_other_rad * other.x,
+                    axis.y + about_one_rad * one.y + about_other_rad * other.y,
+                    axis.z + about_one_rad * one.z + about_other_rad * other.z});
 }
 
 class Builder {

@@ -17,6 +17,27 @@ macro(compueye_compile_quickly)
   endif()
 endmacro()
 
+# Files are compiled eight at a time, because most of what the compiler does for one is reading what all include. The
+# names of one then hide those of another; the presets asan (CI's look at it) and debug compile each by itself.
+add_library(files_together INTERFACE)
+target_compile_options(files_together INTERFACE -Wno-shadow)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # Of unnamed namespaces in a file that another includes, which is then taken for a header.
+  target_compile_options(files_together INTERFACE -Wno-subobject-linkage)
+endif()
+
+function(compueye_together target)
+  if(COMPUEYE_LIBRARY_TOGETHER)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    target_link_libraries(${target} PRIVATE files_together)
+  endif()
+endfunction()
+
+# Files of one shape, whose names are the same in each, or whose names say least when they are long.
+function(compueye_each_by_itself)
+  set_source_files_properties(${ARGV} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # A cache that is not told to keeps nothing of what uses a precompiled header.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-fpch-preprocess)

@@ -5,16 +5,11 @@
 #include <string>
 #include <string_view>
 
+#include "hal/field_range.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::hal {
 namespace {
-
-Result<void> within(std::string_view field, double value, double lo, double hi) {
-  if (value >= lo && value <= hi) return {};
-  return fail(ErrorCode::out_of_range, "sensor." + std::string(field),
-              "is " + std::to_string(value) + ", expected " + std::to_string(lo) + " to " + std::to_string(hi));
-}
 
 Result<void> check_list(std::string_view field, const std::vector<int>& list, int channels) {
   for (const int channel : list) {
@@ -60,20 +55,20 @@ std::optional<int> DetectorSettings::read_before(int channel, int channels) cons
 }
 
 Result<void> DetectorSettings::validate(int channels) const {
-  TRY(within("electrons_per_lsb", electrons_per_lsb, 0.0, 1e9));
-  TRY(within("full_well_e", full_well_e, 0.0, 1e12));
-  TRY(within("flicker_noise_lsb", flicker_noise_lsb, 0.0, 1e6));
-  TRY(within("dark_current_e_per_s", dark_current_e_per_s, 0.0, 1e12));
-  TRY(within("temperature_c", temperature_c, -40.0, 125.0));
-  TRY(within("warming_c_per_s", warming_c_per_s, -10.0, 10.0));
-  TRY(within("gain_per_c", gain_per_c, -0.05, 0.05));
-  TRY(within("inl_lsb", inl_lsb, -1e6, 1e6));
-  TRY(within("mux_channels", mux_channels, 0.0, channels));
-  TRY(within("mux_slot_us", mux_slot_us, 0.0, 1e6));
-  TRY(within("mux_time_constant_us", mux_time_constant_us, 0.0, 1e6));
-  TRY(within("integration_ms", integration_ms, 0.0, 1e6));
-  TRY(within("hot_lsb", hot_lsb, 0.0, 1e9));
-  for (const double response : spectral_response) TRY(within("spectral_response", response, 0.0, 1e6));
+  TRY(expect_within("sensor.electrons_per_lsb", electrons_per_lsb, 0.0, 1e9));
+  TRY(expect_within("sensor.full_well_e", full_well_e, 0.0, 1e12));
+  TRY(expect_within("sensor.flicker_noise_lsb", flicker_noise_lsb, 0.0, 1e6));
+  TRY(expect_within("sensor.dark_current_e_per_s", dark_current_e_per_s, 0.0, 1e12));
+  TRY(expect_within("sensor.temperature_c", temperature_c, -40.0, 125.0));
+  TRY(expect_within("sensor.warming_c_per_s", warming_c_per_s, -10.0, 10.0));
+  TRY(expect_within("sensor.gain_per_c", gain_per_c, -0.05, 0.05));
+  TRY(expect_within("sensor.inl_lsb", inl_lsb, -1e6, 1e6));
+  TRY(expect_within("sensor.mux_channels", mux_channels, 0.0, channels));
+  TRY(expect_within("sensor.mux_slot_us", mux_slot_us, 0.0, 1e6));
+  TRY(expect_within("sensor.mux_time_constant_us", mux_time_constant_us, 0.0, 1e6));
+  TRY(expect_within("sensor.integration_ms", integration_ms, 0.0, 1e6));
+  TRY(expect_within("sensor.hot_lsb", hot_lsb, 0.0, 1e9));
+  for (const double response : spectral_response) TRY(expect_within("sensor.spectral_response", response, 0.0, 1e6));
   const bool sees = std::any_of(spectral_response.begin(), spectral_response.end(), [](double v) { return v > 0.0; });
   if (!sees) {
     return fail(ErrorCode::out_of_range, "sensor.spectral_response", "is 0 everywhere, expected one value above 0");

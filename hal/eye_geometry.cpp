@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "hal/field_range.hpp"
+
 namespace compueye::hal {
 namespace {
 
@@ -27,12 +29,6 @@ struct GridAngles {
 GridAngles grid_angles(const EyeGeometry& eye, int i, int k) {
   return {(k - (eye.columns - 1) / 2.0) * eye.interommatidial_rad,
           ((eye.rows - 1) / 2.0 - i) * eye.interommatidial_rad};
-}
-
-Result<void> check(bool ok, std::string_view field, double value, std::string_view expected) {
-  if (ok) return {};
-  return fail(ErrorCode::out_of_range, std::string(field),
-              "is " + std::to_string(value) + ", expected " + std::string(expected));
 }
 
 }  // namespace
@@ -89,42 +85,43 @@ Result<void> EyeGeometry::validate() const {
   const bool flat = lattice == Lattice::plane;
   const bool pitched = flat || lattice == Lattice::cylinder;
   const double widest_deg = interommatidial_rad / deg * (std::max(rows, columns) - 1) / 2.0;
-  return check(rows >= 1 && rows <= 4096, "eye.rows", rows, "1 to 4096")
-      .and_then([&] { return check(columns >= 1 && columns <= 4096, "eye.columns", columns, "1 to 4096"); })
+  return expect(rows >= 1 && rows <= 4096, "eye.rows", rows, "1 to 4096")
+      .and_then([&] { return expect(columns >= 1 && columns <= 4096, "eye.columns", columns, "1 to 4096"); })
       .and_then([&] {
-        return check(flat || (interommatidial_rad > 0.0 && interommatidial_rad < 90.0 * deg),
-                     "eye.interommatidial_angle_deg", interommatidial_rad / deg, "more than 0 and less than 90");
+        return expect(flat || (interommatidial_rad > 0.0 && interommatidial_rad < 90.0 * deg),
+                      "eye.interommatidial_angle_deg", interommatidial_rad / deg, "more than 0 and less than 90");
       })
       .and_then([&] {
-        return check(acceptance_rad > 0.0 && acceptance_rad <= 120.0 * deg * (1.0 + 1e-12), "eye.acceptance_angle_deg",
-                     acceptance_rad / deg, "more than 0 and at most 120");
+        return expect(acceptance_rad > 0.0 && acceptance_rad <= 120.0 * deg * (1.0 + 1e-12), "eye.acceptance_angle_deg",
+                      acceptance_rad / deg, "more than 0 and at most 120");
       })
       .and_then(
-          [&] { return check(std::isfinite(radius_mm) && radius_mm >= 0.0, "eye.radius_mm", radius_mm, "0 or more"); })
+          [&] { return expect(std::isfinite(radius_mm) && radius_mm >= 0.0, "eye.radius_mm", radius_mm, "0 or more"); })
       .and_then([&] {
-        return check(std::isfinite(lens_height_mm) && lens_height_mm >= 0.0, "eye.lens_height_mm", lens_height_mm,
-                     "0 or more");
+        return expect(std::isfinite(lens_height_mm) && lens_height_mm >= 0.0, "eye.lens_height_mm", lens_height_mm,
+                      "0 or more");
       })
       .and_then([&] {
-        return check(!pitched || (std::isfinite(pitch_mm) && pitch_mm > 0.0), "eye.pitch_mm", pitch_mm,
-                     "more than 0 for a plane or cylinder lattice");
+        return expect(!pitched || (std::isfinite(pitch_mm) && pitch_mm > 0.0), "eye.pitch_mm", pitch_mm,
+                      "more than 0 for a plane or cylinder lattice");
       })
       .and_then([&] {
-        return check(lattice != Lattice::tangent || widest_deg < 90.0, "eye.interommatidial_angle_deg",
-                     interommatidial_rad / deg, "a tangent lattice whose outermost ommatidium stays below 90 deg");
+        return expect(lattice != Lattice::tangent || widest_deg < 90.0, "eye.interommatidial_angle_deg",
+                      interommatidial_rad / deg, "a tangent lattice whose outermost ommatidium stays below 90 deg");
       });
 }
 
 Result<void> ObjectPlane::validate() const {
-  return check(rows >= 1 && rows <= 8192, "object.rows", rows, "1 to 8192")
-      .and_then([&] { return check(cols >= 1 && cols <= 8192, "object.columns", cols, "1 to 8192"); })
+  return expect(rows >= 1 && rows <= 8192, "object.rows", rows, "1 to 8192")
+      .and_then([&] { return expect(cols >= 1 && cols <= 8192, "object.columns", cols, "1 to 8192"); })
       .and_then(
-          [&] { return check(std::isfinite(width_mm) && width_mm > 0.0, "object.width_mm", width_mm, "more than 0"); })
+          [&] { return expect(std::isfinite(width_mm) && width_mm > 0.0, "object.width_mm", width_mm, "more than 0"); })
       .and_then([&] {
-        return check(std::isfinite(height_mm) && height_mm > 0.0, "object.height_mm", height_mm, "more than 0");
+        return expect(std::isfinite(height_mm) && height_mm > 0.0, "object.height_mm", height_mm, "more than 0");
       })
       .and_then([&] {
-        return check(std::isfinite(distance_mm) && distance_mm > 0.0, "object.distance_mm", distance_mm, "more than 0");
+        return expect(std::isfinite(distance_mm) && distance_mm > 0.0, "object.distance_mm", distance_mm,
+                      "more than 0");
       });
 }
 

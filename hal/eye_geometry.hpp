@@ -3,12 +3,9 @@
 #include <string_view>
 
 #include "hal/result.hpp"
+#include "hal/vec3.hpp"
 
 namespace compueye::hal {
-
-struct Vec3 {
-  double x = 0.0, y = 0.0, z = 0.0;
-};
 
 /// How the K x L grid of ommatidia maps to directions. With a = (k-(L-1)/2) dphi, e = ((K-1)/2-i) dphi:
 enum class Lattice {

@@ -4,18 +4,10 @@
 #include <string>
 #include <string_view>
 
+#include "hal/field_range.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::hal {
-namespace {
-
-Result<void> check(bool ok, std::string_view field, double value, std::string_view expected) {
-  if (ok) return {};
-  return fail(ErrorCode::out_of_range, std::string(field),
-              "is " + std::to_string(value) + ", expected " + std::string(expected));
-}
-
-}  // namespace
 
 double SensorSettings::lsb() const noexcept {
   return std::ldexp(full_scale, -bits);
@@ -27,12 +19,12 @@ double SensorSettings::noise_sigma() const noexcept {
 }
 
 Result<void> SensorSettings::validate() const {
-  TRY(check(bits >= 1 && bits <= 24, "sensor.bits", bits, "1 to 24"));
-  TRY(check(std::isfinite(full_scale) && full_scale > 0.0, "sensor.full_scale", full_scale, "more than 0"));
-  TRY(check(dark_level_lsb >= 0.0 && dark_level_lsb < std::ldexp(1.0, bits), "sensor.dark_level_lsb", dark_level_lsb,
-            "0 or more and below 2^bits"));
-  return check(std::isfinite(read_noise_lsb) && read_noise_lsb >= 0.0, "sensor.read_noise_lsb", read_noise_lsb,
-               "0 or more");
+  TRY(expect(bits >= 1 && bits <= 24, "sensor.bits", bits, "1 to 24"));
+  TRY(expect(std::isfinite(full_scale) && full_scale > 0.0, "sensor.full_scale", full_scale, "more than 0"));
+  TRY(expect(dark_level_lsb >= 0.0 && dark_level_lsb < std::ldexp(1.0, bits), "sensor.dark_level_lsb", dark_level_lsb,
+             "0 or more and below 2^bits"));
+  return expect(std::isfinite(read_noise_lsb) && read_noise_lsb >= 0.0, "sensor.read_noise_lsb", read_noise_lsb,
+                "0 or more");
 }
 
 }  // namespace compueye::hal

@@ -9,7 +9,7 @@
 namespace compueye::calib {
 namespace {
 
-constexpr double rounding_variance = 1.0 / 12.0;
+constexpr double rounding_lsb2 = 1.0 / 12.0;
 
 /// Linear between points, level beyond the first and last.
 double interpolated(std::span<const double> times, std::span<const double> values, double time) noexcept {
@@ -164,7 +164,7 @@ class Maker {
   [[nodiscard]] double variance_lsb2(double light_lsb) const noexcept {
     const double read = noise_.read_noise_lsb;
     const double shot = noise_.electrons_per_lsb ? std::max(light_lsb, 0.0) / *noise_.electrons_per_lsb : 0.0;
-    return read * read + rounding_variance + shot;
+    return read * read + rounding_lsb2 + shot;
   }
 
   // By how references and darks scatter about what their neighbours in time say.

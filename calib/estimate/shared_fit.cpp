@@ -17,7 +17,7 @@ using SharedVector = Eigen::Matrix<double, shared_count, 1>;
 using SharedMatrix = Eigen::Matrix<double, shared_count, shared_count>;
 using ConeMatrix = Eigen::Matrix<double, cone_parameters, cone_parameters>;
 
-constexpr int most_passes = 8;
+constexpr int most_rounds = 8;
 /// A pass that moves everything by less than so much of its own sigma is the last.
 constexpr double small_move = 0.02;
 constexpr double distance_share = 0.02, turn_rad = 0.05, log_gamma = 0.5, black_level = 0.1;  // prior
@@ -44,10 +44,10 @@ struct Normal {
   SharedVector right = SharedVector::Zero();
 };
 
-class Fitter {
+class SharedFitter {
  public:
-  Fitter(SoftCone& model, std::span<const int> channels, const Captures& captures, const LightSamples& samples,
-         const ConePrior& prior, const SharedFitSettings& settings)
+  SharedFitter(SoftCone& model, std::span<const int> channels, const Captures& captures, const LightSamples& samples,
+               const ConePrior& prior, const SharedFitSettings& settings)
       : model_(model), channels_(channels), captures_(captures), samples_(samples), prior_(prior) {
     const bool gamma = settings.display && has_greys(captures);
     fitted_ = {settings.plane, settings.plane, settings.plane, gamma, settings.display};
@@ -58,7 +58,7 @@ class Fitter {
     SharedFit found;
     SharedVector at = SharedVector::Zero(), sigma = SharedVector::Zero();
     const bool any = std::any_of(fitted_.begin(), fitted_.end(), [](bool each) { return each; });
-    while (any && found.passes < most_passes) {
+    while (any && found.passes < most_rounds) {
       const Normal normal = look(at);
       const SharedMatrix covariance = normal.matrix.inverse();
       const SharedVector move = covariance * normal.right;
@@ -175,7 +175,7 @@ class Fitter {
 
 SharedFit fit_shared(SoftCone& model, std::span<const int> channels, const Captures& captures,
                      const LightSamples& samples, const ConePrior& prior, const SharedFitSettings& settings) {
-  return Fitter(model, channels, captures, samples, prior, settings).fit();
+  return SharedFitter(model, channels, captures, samples, prior, settings).fit();
 }
 
 }  // namespace compueye::calib

@@ -18,19 +18,6 @@ constexpr double least_sine = 1e-9;
 constexpr double least_radius_px = 3.0;
 constexpr int most_parts = 8;
 
-double dot(const Vec3& a, const Vec3& b) noexcept {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-Vec3 scaled_to_one(const Vec3& v) noexcept {
-  const double length = std::sqrt(dot(v, v));
-  return {v.x / length, v.y / length, v.z / length};
-}
-
-Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 Vec3 less_along(const Vec3& v, const Vec3& unit) noexcept {
   const double along = dot(v, unit);
   return {v.x - along * unit.x, v.y - along * unit.y, v.z - along * unit.z};
@@ -85,7 +72,7 @@ SoftCone::Place SoftCone::placed(int i, int k, const ConeParameters& parameters,
                                  const PlaneError& plane) const noexcept {
   const Vec3 drawn = eye_.axis(i, k);
   const Vec3 up = std::abs(drawn.y) < 0.7 ? Vec3{0.0, 1.0, 0.0} : Vec3{1.0, 0.0, 0.0};
-  const Vec3 one = scaled_to_one(cross(up, drawn)), other = cross(drawn, one);
+  const Vec3 one = unit(cross(up, drawn)), other = cross(drawn, one);
   const double a = parameters.tilt_one_rad, b = parameters.tilt_other_rad;
   const Vec3 leaning{drawn.x + a * one.x + b * other.x, drawn.y + a * one.y + b * other.y,
                      drawn.z + a * one.z + b * other.z};
@@ -95,7 +82,7 @@ SoftCone::Place SoftCone::placed(int i, int k, const ConeParameters& parameters,
   const Vec3 apex = eye_.apex(i, k);
   at.apex = turned_back({apex.x, apex.y, apex.z - at.z_mm}, plane);
   at.apex.z += at.z_mm;
-  at.axis = turned_back(scaled_to_one(leaning), plane);
+  at.axis = turned_back(unit(leaning), plane);
   const auto moves = [&](const Vec3& v) {
     const Vec3 move = less_along(turned_back(v, plane), at.axis);
     return Vec3{move.x / length, move.y / length, move.z / length};
@@ -189,9 +176,9 @@ void SoftCone::add_part(const Place& at, const Window& window, int row, int col)
   sums_[0][n] += share * part.covered;
   if (part.by_angle == 0.0) return;
   const Vec3 ray =
-      scaled_to_one({(col + 0.5) * plane_.pixel_width_mm() / window.parts - plane_.width_mm / 2.0 - at.apex.x,
-                     plane_.height_mm / 2.0 - (row + 0.5) * plane_.pixel_height_mm() / window.parts - at.apex.y,
-                     at.z_mm - at.apex.z});
+      hal::unit({(col + 0.5) * plane_.pixel_width_mm() / window.parts - plane_.width_mm / 2.0 - at.apex.x,
+                 plane_.height_mm / 2.0 - (row + 0.5) * plane_.pixel_height_mm() / window.parts - at.apex.y,
+                 at.z_mm - at.apex.z});
   const double sine = std::max(std::sin(*angle), least_sine);
   sums_[1][n] -= share * part.by_angle * dot(ray, at.by_one) / sine;
   sums_[2][n] -= share * part.by_angle * dot(ray, at.by_other) / sine;

@@ -8,11 +8,11 @@
 namespace compueye::calib {
 namespace {
 
-constexpr std::int64_t unit = 1 << 12;  // of an interpolation's weights
+constexpr std::int64_t weight_unit = 1 << 12;  // of an interpolation's weights
 
-/// Smooth step 3 t^2 - 2 t^3 at t = k / pitch, in units of 1 / unit.
+/// Smooth step 3 t^2 - 2 t^3 at t = k / pitch, in units of 1 / weight_unit.
 std::int64_t step_weight(std::int64_t k, std::int64_t pitch) noexcept {
-  return k * k * (3 * pitch - 2 * k) * unit / (pitch * pitch * pitch);
+  return k * k * (3 * pitch - 2 * k) * weight_unit / (pitch * pitch * pitch);
 }
 
 /// Pixels first .. of an axis between knots `pitch` apart: the knot before each, and the next one's weight.
@@ -32,7 +32,7 @@ struct Axis {
 };
 
 std::int64_t between(std::int64_t one, std::int64_t next, std::int64_t weight) noexcept {
-  return one * (unit - weight) + next * weight;
+  return one * (weight_unit - weight) + next * weight;
 }
 
 void add_octave(const hal::Image& image, std::int64_t pitch, RowDraws& draws, std::vector<std::int64_t>& sums) {

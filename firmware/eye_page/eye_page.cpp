@@ -15,7 +15,7 @@
 namespace compueye::firmware {
 namespace {
 
-constexpr std::string_view style = R"(
+constexpr std::string_view page_style = R"(
 body { font: 15px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff; max-width: 60em; margin: 2em auto;
   padding: 0 1em; }
 h1 { font-size: 1.7em; margin-bottom: 0; } h2 { font-size: 1.2em; margin: 2.2em 0 .4em; border-bottom: 1px solid #bbb; }
@@ -68,7 +68,7 @@ hal::Result<std::string> eye_page(const PageData& data) {
   std::string out =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-      title + "</title>\n<style>" + std::string(style) + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n<p>" +
+      title + "</title>\n<style>" + std::string(page_style) + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n<p>" +
       escaped(data.file) + "</p>\n<p>" + escaped(summary(data)) + "</p>\n<nav>";
   for (const PageSection& section : page_sections()) {
     out += fmt::format("<a href=\"#{}\">{}</a>\n", section.id, escaped(section.title));

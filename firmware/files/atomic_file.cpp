@@ -18,8 +18,6 @@
 namespace compueye::firmware {
 namespace {
 
-constexpr std::string_view cannot_write = "cannot be written";
-
 /// What is no file and cannot be replaced. A pipe is opened without waiting for its reader, and written to as usual.
 hal::Result<FileDescriptor> open_in_place(const std::string& path) {
   FileDescriptor file(::open(path.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));

@@ -13,8 +13,11 @@
 
 namespace compueye::firmware {
 
+/// What file_error() says of a file that was to be written.
+inline constexpr std::string_view cannot_write = "cannot be written";
+
 /// Turns an errno into an Error whose place is `path` and whose sentence says what could not be done (`action`, for
-/// example "cannot be written"), why, and what to do about it. Codes: not_found, no_space (full disk, quota, size
+/// example cannot_write), why, and what to do about it. Codes: not_found, no_space (full disk, quota, size
 /// limit), otherwise io.
 [[nodiscard]] hal::Error file_error(int error_number, const std::string& path, std::string_view action);
 

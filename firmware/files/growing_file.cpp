@@ -9,11 +9,7 @@
 #include "firmware/files/atomic_file.hpp"
 
 namespace compueye::firmware {
-namespace {
-
-constexpr std::string_view cannot_write = "cannot be written";
-
-}  // namespace
+namespace {}  // namespace
 
 hal::Result<GrowingFile> GrowingFile::create(const std::string& path) {
   GrowingFile made;

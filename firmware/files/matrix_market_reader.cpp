@@ -270,7 +270,7 @@ bool read_array(MatrixMarketScanner& scan, const Banner& banner, const Sizes& si
 }
 
 /// No banner is longer, and what has no line end need not be read to its end.
-Result<void> accept_begin(const std::string& path, std::string_view begin) {
+Result<void> accept_matrix(const std::string& path, std::string_view begin) {
   if (begin.size() < first_piece_bytes || begin.find('\n') != std::string_view::npos) return {};
   return hal::fail(ErrorCode::bad_format, path + ":1",
                    "does not end within " + std::to_string(begin.size()) +
@@ -281,7 +281,7 @@ Result<void> accept_begin(const std::string& path, std::string_view begin) {
 
 Result<Response> read_matrix_market(const std::string& path) {
   const std::string bytes =
-      TRY(read_whole_file(path, max_file_bytes, [&](std::string_view begin) { return accept_begin(path, begin); }));
+      TRY(read_whole_file(path, max_file_bytes, [&](std::string_view begin) { return accept_matrix(path, begin); }));
   std::string_view text = bytes;
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());

@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 using hal::ErrorCode;
 using hal::Result;
 
-constexpr std::string_view cannot_write = "cannot be written";
 constexpr int most_links = 40;  // the kernel's own
 
 /// As the kernel's fs.protected_symlinks has it, but in every folder: an output may go through a link that its user,

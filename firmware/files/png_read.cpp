@@ -190,7 +190,7 @@ struct OtherKind {
 constexpr std::array<OtherKind, 6> other_kinds{
     {{"\xFF\xD8\xFF", "JPEG"}, {"GIF8", "GIF"}, {"BM", "BMP"}, {"RIFF", "WebP"}, {"II*", "TIFF"}, {"MM", "TIFF"}}};
 
-Result<void> accept_begin(const std::string& path, std::string_view begin) {
+Result<void> accept_png(const std::string& path, std::string_view begin) {
   if (begin.size() >= 8 && png_sig_cmp(reinterpret_cast<png_const_bytep>(begin.data()), 0, 8) == 0) return {};
   if (begin.empty()) return hal::fail(ErrorCode::bad_format, path, "is an empty file, expected a PNG picture");
   const auto* kind = std::find_if(other_kinds.begin(), other_kinds.end(),
@@ -208,7 +208,7 @@ Result<Made> made_of(const std::string& path, Made (*of_8)(const PngReader&), Ma
   // Incompressible RGBA of 16 bits at the largest size, with room for other chunks.
   constexpr std::uint64_t max_file_bytes = std::uint64_t{1} << 30U;
   const std::string bytes =
-      TRY(read_whole_file(path, max_file_bytes, [&](std::string_view begin) { return accept_begin(path, begin); }));
+      TRY(read_whole_file(path, max_file_bytes, [&](std::string_view begin) { return accept_png(path, begin); }));
   PngReader reader(bytes);
   if (!reader.run(PngReader::read_header)) return damaged(path, reader);
   TRY(check_size(path, reader, bytes.size()));

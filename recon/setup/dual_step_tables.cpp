@@ -18,7 +18,7 @@ namespace {
 /// 2^17 of the rest's step instead of 2^9. Where that is not enough, modes nearer to the rest get one too.
 constexpr double refined_from[] = {16.0, 4.0, 1.0};
 /// Rounding may move the metric by so much before more modes get a second column.
-constexpr double most_rounding = 0.125;
+constexpr double most_metric_rounding = 0.125;
 
 /// One class's numbers in the order of leading_modes().
 struct ClassModes {
@@ -81,7 +81,7 @@ struct Refinement {
   double rounding = 0.0;    ///< how far the metric moves all the same
 };
 
-/// So few modes with two columns that rounding moves the metric by most_rounding at most, or all of them.
+/// So few modes with two columns that rounding moves the metric by most_metric_rounding at most, or all of them.
 Refinement refine(const ClassModes& modes, double penalty, double basis_share) {
   const double rest = gain_of(modes.left_out(), penalty, basis_share);
   Refinement found;
@@ -89,7 +89,7 @@ Refinement refine(const ClassModes& modes, double penalty, double basis_share) {
     std::size_t far = 0;
     while (far < modes.count && gain_of(modes.values[far], penalty, basis_share) * from < rest) ++far;
     found = {padded(far), rounding_of(modes, penalty, basis_share, padded(far))};
-    if (found.rounding <= most_rounding) break;
+    if (found.rounding <= most_metric_rounding) break;
   }
   return found;
 }

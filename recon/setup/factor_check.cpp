@@ -52,7 +52,7 @@ std::vector<double> combined(std::span<const float> vectors, const std::vector<d
   return sum;
 }
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
+double inner(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
@@ -111,7 +111,7 @@ bool bounds_the_rest(std::span<const float> values, std::span<const float> vecto
       const int at = classes.index(c, m);
       if (at >= 0) next[static_cast<std::size_t>(at)] += classes.share(c, m) * again[static_cast<std::size_t>(m)];
     }
-    largest = std::max(largest, dot(v, next));
+    largest = std::max(largest, inner(v, next));
     leave_out(vectors, count, next);
     v = std::move(next);
   }

@@ -37,7 +37,7 @@ class RelativeError {
   double scale_;
 };
 
-constexpr Eigen::Index whole_below = 64;
+constexpr Eigen::Index exact_below = 64;
 
 double of_whole(const RelativeError& error) {
   const Eigen::Index order = error.rows();
@@ -70,7 +70,7 @@ double rounding(const RoundedStep& step) {
   const double most = bound(step);
   if (!(most > 0.0)) return 0.0;  // nothing to iterate on: vectors that are stored as they are
   const RelativeError error(step);
-  if (error.rows() <= whole_below) return of_whole(error);
+  if (error.rows() <= exact_below) return of_whole(error);
   const SymmetricProduct product = [&](const double* in, double* out) {
     Eigen::Map<Eigen::VectorXd>(out, error.rows()) = error.apply(Eigen::Map<const Eigen::VectorXd>(in, error.rows()));
   };

@@ -11,16 +11,8 @@ namespace {
 
 using hal::Vec3;
 
-double dot(const Vec3& a, const Vec3& b) noexcept {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 Vec3 sum(double a, const Vec3& u, double b, const Vec3& v) noexcept {
   return {a * u.x + b * v.x, a * u.y + b * v.y, a * u.z + b * v.z};
-}
-
-Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 /// How an ommatidium looks at the object plane.

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/render/vec3.hpp"
+#include "hal/vec3.hpp"
 
 namespace compueye::sim {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "sim/render/vec3.hpp"
+#include "hal/vec3.hpp"
 #include "sim/scene/surface.hpp"
 
 namespace compueye::sim {

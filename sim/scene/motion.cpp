@@ -15,10 +15,6 @@ hal::Vec3 turned(const Pose& pose, hal::Vec3 v) noexcept {
   return {ct * v.x - st * v.z, v.y, st * v.x + ct * v.z};
 }
 
-double length(const hal::Vec3& v) noexcept {
-  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-
 hal::Vec3 between(const hal::Vec3& a, const hal::Vec3& b, double share) noexcept {
   return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.z + share * (b.z - a.z)};
 }
@@ -68,7 +64,7 @@ double Motion::speed_mm_per_s() const noexcept {
   double fastest = 0.0;
   for (std::size_t k = 1; k < path.size(); ++k) {
     const hal::Vec3 &to = path[k].offset_mm, &from = path[k - 1].offset_mm;
-    const double far = length({to.x - from.x, to.y - from.y, to.z - from.z});
+    const double far = length(to - from);
     fastest = std::max(fastest, far / (path[k].t_s - path[k - 1].t_s));
   }
   return length(velocity_mm_per_s) + fastest;

@@ -18,7 +18,7 @@ namespace {
 
 using hal::Result;
 
-constexpr int panel_pixels = 200;
+constexpr int scene_pixels = 200;
 
 /// The frame's levels where their ommatidia are, LSB.
 Result<hal::Image> levels_of(sim::Simulation& simulation, std::uint64_t frame) {
@@ -80,7 +80,7 @@ Result<void> write_effect_gallery(const Board& board, const sim::Scene& scene, c
                      "nothing calls for any effect, so there is none to show; see simulate --explain");
   }
   return write_contact_sheet(request.png, fmt::format("{} before {}, frame {}", scene.name, board.name, request.frame),
-                             panels, panel_pixels);
+                             panels, scene_pixels);
 }
 
 }  // namespace compueye::firmware

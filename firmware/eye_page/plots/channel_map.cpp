@@ -14,7 +14,7 @@ namespace compueye::firmware {
 namespace {
 
 using hal::ChannelStatus;
-constexpr double left = 64.0, top = 20.0, side = 400.0;
+constexpr double map_left = 64.0, map_top = 20.0, side = 400.0;
 
 /// How a channel that is not good is marked: a shape about 0 0, two units wide, so that print in grey tells them apart.
 struct Mark {
@@ -36,9 +36,9 @@ std::string mark_at(const Mark& mark, double x, double y, double half, std::stri
                      hal::name(mark.status), x, y, half, mark.shape);
 }
 
-class Drawing {
+class MapDrawing {
  public:
-  explicit Drawing(const ChannelMap& map)
+  explicit MapDrawing(const ChannelMap& map)
       : map_(map),
         cell_(side / std::max(map.rows, map.columns)),
         width_(cell_ * map.columns),
@@ -49,20 +49,21 @@ class Drawing {
 
   [[nodiscard]] hal::Result<std::string> values(const ToneScale& scale) const {
     if (map_.values.empty()) return background();
-    return image_element(left, top, width_, height_, TRY(tone_picture(map_.rows, map_.columns, map_.values, scale)));
+    return image_element(map_left, map_top, width_, height_,
+                         TRY(tone_picture(map_.rows, map_.columns, map_.values, scale)));
   }
 
   /// Of an eye whose ommatidia can be told apart, with lines between them.
   [[nodiscard]] std::string background() const {
     constexpr double least_cell = 8.0;
-    std::string out = fmt::format("<rect class=\"paper\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\"/>", left,
-                                  top, width_, height_);
+    std::string out = fmt::format("<rect class=\"paper\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\"/>",
+                                  map_left, map_top, width_, height_);
     if (cell_ < least_cell) return out;
     out += "<g class=\"axes\">";
     for (int k = 1; k < map_.columns; ++k)
-      out += fmt::format("<path d=\"M{:.1f} {}v{:.1f}\"/>", left + k * cell_, top, height_);
+      out += fmt::format("<path d=\"M{:.1f} {}v{:.1f}\"/>", map_left + k * cell_, map_top, height_);
     for (int i = 1; i < map_.rows; ++i)
-      out += fmt::format("<path d=\"M{} {:.1f}h{:.1f}\"/>", left, top + i * cell_, width_);
+      out += fmt::format("<path d=\"M{} {:.1f}h{:.1f}\"/>", map_left, map_top + i * cell_, width_);
     return out + "</g>";
   }
 
@@ -75,7 +76,8 @@ class Drawing {
       const auto i = static_cast<double>(m / static_cast<std::size_t>(map_.columns));
       const auto k = static_cast<double>(m % static_cast<std::size_t>(map_.columns));
       // Large enough to be seen in an eye of many.
-      out += mark_at(*mark, left + (k + 0.5) * cell_, top + (i + 0.5) * cell_, std::max(0.34 * cell_, 2.5), "is");
+      out +=
+          mark_at(*mark, map_left + (k + 0.5) * cell_, map_top + (i + 0.5) * cell_, std::max(0.34 * cell_, 2.5), "is");
     }
     return out;
   }
@@ -83,22 +85,22 @@ class Drawing {
   [[nodiscard]] std::string axes() const {
     std::string out =
         fmt::format("<rect class=\"frame\" x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\"/><g class=\"axes\">",
-                    left, top, width_, height_);
+                    map_left, map_top, width_, height_);
     const auto stride = [](int count) { return std::max(1, (count + 7) / 8); };
     for (int k = 0; k < map_.columns; k += stride(map_.columns)) {
-      out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>", left + (k + 0.5) * cell_,
-                         top + height_ + 17.0, k);
+      out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>",
+                         map_left + (k + 0.5) * cell_, map_top + height_ + 17.0, k);
     }
     for (int i = 0; i < map_.rows; i += stride(map_.rows)) {
-      out += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", left - 7.0,
-                         top + (i + 0.5) * cell_ + 4.0, i);
+      out += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", map_left - 7.0,
+                         map_top + (i + 0.5) * cell_ + 4.0, i);
     }
     out += fmt::format(
         "<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">column of the ommatidium</text>",
-        left + 0.5 * width_, top + height_ + 40.0);
+        map_left + 0.5 * width_, map_top + height_ + 40.0);
     out += fmt::format(
         "<text class=\"label\" transform=\"translate(16 {:.1f}) rotate(-90)\" text-anchor=\"middle\">row</text>",
-        top + 0.5 * height_);
+        map_top + 0.5 * height_);
     return out + "</g>";
   }
 
@@ -125,15 +127,15 @@ class Drawing {
 }  // namespace
 
 hal::Result<std::string> channel_map(const std::string& id, const std::string& about, const ChannelMap& map) {
-  const Drawing drawing(map);
+  const MapDrawing drawing(map);
   const ToneScale scale = ToneScale::by_decades(map.values);
   constexpr double width = 760.0;
-  std::string out = svg_opening(id, width, top + drawing.height() + 52.0, about);
+  std::string out = svg_opening(id, width, map_top + drawing.height() + 52.0, about);
   out += TRY(drawing.values(scale)) + drawing.axes() + drawing.marked();
-  const double beside = left + drawing.width() + 28.0;
+  const double beside = map_left + drawing.width() + 28.0;
   const bool toned = !map.values.empty();
-  if (toned) out += tone_bar(id, beside, top, drawing.height(), scale, map.label);
-  out += drawing.legend(beside + (toned ? 96.0 : 0.0), top + 14.0);
+  if (toned) out += tone_bar(id, beside, map_top, drawing.height(), scale, map.label);
+  out += drawing.legend(beside + (toned ? 96.0 : 0.0), map_top + 14.0);
   return out + "</svg>\n";
 }
 

@@ -21,9 +21,9 @@ struct Look {
 constexpr std::array<Look, 5> looks{
     {{"#0072b2", "none"}, {"#d55e00", "7 3"}, {"#007a5a", "2 3"}, {"#9b4f82", "9 3 2 3"}, {"#000000", "12 4"}}};
 
-class Drawing {
+class CurveDrawing {
  public:
-  Drawing(const Axis& x, const Axis& y) : x_(x), y_(y) {}
+  CurveDrawing(const Axis& x, const Axis& y) : x_(x), y_(y) {}
 
   [[nodiscard]] double across(double x) const { return left + x_.share(x) * (right - left); }
   [[nodiscard]] double down(double y) const { return bottom - y_.share(y) * (bottom - top); }
@@ -107,7 +107,7 @@ std::string curve_plot(const std::string& id, const std::string& about, Axis x, 
   }
   x.settle();
   y.settle();
-  const Drawing drawing(x, y);
+  const CurveDrawing drawing(x, y);
   std::string out = svg_opening(id, width, height, about);
   for (std::size_t c = 0; c < curves.size(); ++c) out += drawing.band(curves[c], looks[c % looks.size()]);
   out += drawing.frame();

@@ -34,7 +34,7 @@ std::string words_of(const std::string& name) {
   return found != figures.end() ? std::string(found->words) : name;
 }
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 std::string told(double value) {
   return std::isfinite(value) ? significant(value, 4) : "not determined";
@@ -60,7 +60,7 @@ hal::Result<std::string> sensor_table(const PageData& data) {
     rows.push_back(
         column == nullptr
             ? std::vector<std::string>{words_of(name), of_all, "", "", "", ""}
-            : std::vector<std::string>{words_of(name), of_all, told(spread ? spread->median : unknown),
+            : std::vector<std::string>{words_of(name), of_all, told(spread ? spread->median : not_known),
                                        each(&Spread::low), each(&Spread::high),
                                        fmt::format("{} of {}", spread ? spread->count : 0, estimate.status.size())});
   };
