@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "calib/depth/sight_line.hpp"
 #include "calib/estimate/cone_fit.hpp"
+#include "calib/rows_by_threads.hpp"
+#include "hal/try.hpp"
 
 namespace compueye::calib {
 namespace {
@@ -39,6 +42,7 @@ double sigma_at(const RowEstimate& row, const PlacePx& at, const hal::ObjectPlan
   return weights > 0.0 ? sum / weights : 0.0;
 }
 
+/// Of one thread.
 class Interpolation {
  public:
   Interpolation(const hal::EyeGeometry& eye, const hal::ObjectPlane& plane, const AtDistance& near,
@@ -52,7 +56,8 @@ class Interpolation {
     for (std::size_t s = 0; s < light_.size(); ++s) light_[s] = nearer.exposure_s / sessions_[s]->exposure_s;
   }
 
-  ResponseEstimate rows() && {
+  /// All but the rows.
+  [[nodiscard]] ResponseEstimate of_all() const {
     const ResponseEstimate& near = sessions_[0]->rows;
     const ResponseEstimate& far = sessions_[1]->rows;
     ResponseEstimate found;
@@ -62,11 +67,13 @@ class Interpolation {
     found.gamma_sigma = mix(near.gamma_sigma, far.gamma_sigma, share_);
     found.black_level = mix(near.black_level, far.black_level, share_);
     found.black_level_sigma = mix(near.black_level_sigma, far.black_level_sigma, share_);
-    for (std::size_t m = 0; m < near.rows.size(); ++m) {
-      found.rows.push_back(row(static_cast<int>(m), near.rows[m], far.rows[m]));
-    }
+    found.rows.resize(near.rows.size());
     found.dark_lsb = dark_levels();
     return found;
+  }
+
+  [[nodiscard]] RowEstimate row(std::size_t m) {
+    return row(static_cast<int>(m), sessions_[0]->rows.rows[m], sessions_[1]->rows.rows[m]);
   }
 
  private:
@@ -190,9 +197,16 @@ std::size_t nearer_one(double near_mm, double asked_mm, double far_mm) noexcept 
   return asked_mm - near_mm <= far_mm - asked_mm ? 0 : 1;
 }
 
-ResponseEstimate between_distances(const hal::EyeGeometry& eye, const hal::ObjectPlane& plane, const AtDistance& near,
-                                   const AtDistance& far) {
-  return Interpolation(eye, plane, near, far).rows();
+hal::Result<ResponseEstimate> between_distances(const hal::EyeGeometry& eye, const hal::ObjectPlane& plane,
+                                                const AtDistance& near, const AtDistance& far, int threads,
+                                                const recon::Progress& progress) {
+  ResponseEstimate found = Interpolation(eye, plane, near, far).of_all();
+  TRY(rows_by_threads({found.rows.size(), threads, "rows between distances", progress}, [&]() -> RowWork {
+    return [&, between = std::make_shared<Interpolation>(eye, plane, near, far)](std::size_t m) {
+      found.rows[m] = between->row(m);
+    };
+  }));
+  return found;
 }
 
 }  // namespace compueye::calib

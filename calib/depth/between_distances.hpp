@@ -4,6 +4,8 @@
 
 #include "calib/estimate/estimate.hpp"
 #include "hal/eye_geometry.hpp"
+#include "hal/result.hpp"
+#include "recon/problem/progress.hpp"
 
 namespace compueye::calib {
 
@@ -30,8 +32,10 @@ struct AtDistance {
 ///
 /// The light is that of the nearer one's exposure. A channel that is not good in one is not good. Dark levels, gamma
 /// and black level: linearly; dark levels of two exposures: the nearer one's. Rows have their cone, but no fields of
-/// their own; there is no lamp.
-[[nodiscard]] ResponseEstimate between_distances(const hal::EyeGeometry& eye, const hal::ObjectPlane& plane,
-                                                 const AtDistance& near, const AtDistance& far);
+/// their own; there is no lamp. The same bits for any number of `threads`. Errors: those of rows_by_threads().
+[[nodiscard]] hal::Result<ResponseEstimate> between_distances(const hal::EyeGeometry& eye,
+                                                              const hal::ObjectPlane& plane, const AtDistance& near,
+                                                              const AtDistance& far, int threads = 1,
+                                                              const recon::Progress& progress = {});
 
 }  // namespace compueye::calib

@@ -1,18 +1,18 @@
 #include "calib/estimate/estimate.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include "calib/estimate/least_squares_rows.hpp"
 #include "calib/estimate/row_estimator.hpp"
 #include "calib/median.hpp"
+#include "calib/rows_by_threads.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::calib {
@@ -23,6 +23,11 @@ using hal::fail;
 using hal::Result;
 
 constexpr int most_threads = 64;
+
+tl::unexpected<hal::Error> no_memory() {
+  return fail(ErrorCode::no_space, "estimate",
+              "does not fit into the memory of this machine: take fewer patterns, knots or threads");
+}
 
 Result<void> check(std::string_view field, double value, double lo, double hi) {
   if (value >= lo && value <= hi) return {};
@@ -82,7 +87,7 @@ std::vector<int> evenly_spread(const std::vector<int>& channels, int count) {
   return spread;
 }
 
-/// Work on each of `channels` by several threads; what one does is its own. The caller's thread reports.
+/// Work on each of `count` channels by several threads; what one does is its own.
 class RowWorkers {
  public:
   RowWorkers(const hal::EyeGeometry& eye, const hal::ObjectPlane& plane, const RowTask& task, const Progress& progress)
@@ -91,44 +96,22 @@ class RowWorkers {
   using Work = std::function<void(RowEstimator&, std::size_t index)>;
 
   Result<void> run(std::size_t count, std::string_view what, const Work& work) {
-    next_ = 0;
-    done_ = 0;
-    std::vector<std::thread> threads;
-    const auto wanted = std::min(static_cast<std::size_t>(task_.settings.threads), count);
-    for (std::size_t t = 1; t < wanted; ++t) {
-      threads.emplace_back([&] { serve(count, {}, work); });
-    }
-    serve(count, what, work);
-    for (std::thread& thread : threads) thread.join();
-    if (no_space_) {
-      return fail(ErrorCode::no_space, "estimate",
-                  "does not fit into the memory of this machine: take fewer patterns, knots or threads");
-    }
-    if (stopped_) return fail(ErrorCode::interrupted, "estimate", "was given up before it was complete");
-    return {};
+    const auto worker = [&]() -> RowWork {
+      return [&work, estimator = std::make_shared<RowEstimator>(eye_, plane_, task_)](std::size_t index) {
+        work(*estimator, index);
+      };
+    };
+    const auto done = rows_by_threads({count, task_.settings.threads, what, progress_}, worker);
+    if (done) return {};
+    if (done.error().code == ErrorCode::no_space) return no_memory();
+    return fail(done.error().code, "estimate", "was given up before it was complete");
   }
 
  private:
-  void serve(std::size_t count, std::string_view what, const Work& work) noexcept {
-    try {
-      RowEstimator estimator(eye_, plane_, task_);
-      for (std::size_t index = next_++; index < count && !stopped_ && !no_space_; index = next_++) {
-        work(estimator, index);
-        const std::size_t done = ++done_;
-        if (what.empty() || !progress_) continue;
-        if (!progress_(what, static_cast<double>(done), static_cast<double>(count))) stopped_ = true;
-      }
-    } catch (const std::bad_alloc&) {
-      no_space_ = true;
-    }
-  }
-
   const hal::EyeGeometry& eye_;
   const hal::ObjectPlane& plane_;
   const RowTask& task_;
   const Progress& progress_;
-  std::atomic<std::size_t> next_{0}, done_{0};
-  std::atomic<bool> stopped_{false}, no_space_{false};
 };
 
 Result<std::vector<RowEstimate>> fitted_rows(const std::vector<int>& good, RowWorkers& workers, const RowTask& task) {
@@ -214,8 +197,7 @@ Result<ResponseEstimate> estimate_response(const Captures& captures, const CodeN
   try {
     return estimated(captures, noise, eye, plane, settings, progress);
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::no_space, "estimate",
-                "does not fit into the memory of this machine: take fewer patterns, knots or threads");
+    return no_memory();
   }
 }
 

@@ -20,8 +20,7 @@ tl::unexpected<hal::Error> failed(hal::ErrorCode code, const std::string& what) 
 }
 
 tl::unexpected<hal::Error> gone(const std::string& what) {
-  return hal::fail(hal::ErrorCode::disconnected, place_name,
-                   what + ", and the eye may have seen something else; go on with --resume");
+  return hal::fail(hal::ErrorCode::disconnected, place_name, what + ", and the eye may have seen something else");
 }
 
 hal::Result<void> check_monitor(int monitor) {

@@ -20,7 +20,7 @@ constexpr int levels = 256;
 
 tl::unexpected<hal::Error> unreadable(int error) {
   return hal::fail(hal::ErrorCode::io, "terminal",
-                   "cannot be read: " + std::generic_category().message(error) + "; go on with --resume from one");
+                   "cannot be read: " + std::generic_category().message(error) + "; give it one that can");
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ hal::Result<void> ManualLight::wait_for_line(const std::string& request) {
     // A terminal whose other end has gone.
     if (got == 0 || (got < 0 && errno == EIO)) {
       return hal::fail(hal::ErrorCode::end_of_stream, "terminal",
-                       "its input has ended, so that nobody says when a picture is there; go on with --resume");
+                       "its input has ended, so that nobody says when a picture is there");
     }
     if (got < 0 && errno != EINTR && errno != EAGAIN) return unreadable(errno);
     if (got > 0) return {};

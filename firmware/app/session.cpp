@@ -55,7 +55,14 @@ hal::Result<void> print_text(const std::string& text, OutputStream& to, const st
 }
 
 int exit_code(const hal::Error& error) noexcept {
-  return error.code == hal::ErrorCode::usage ? 2 : 1;
+  switch (error.code) {
+    case hal::ErrorCode::usage:
+      return 2;
+    case hal::ErrorCode::stale:
+      return 3;
+    default:
+      return 1;
+  }
 }
 
 std::string error_line(const hal::Error& error) {

@@ -28,7 +28,8 @@ namespace compueye::firmware {
                                            const std::function<bool()>& go_on,
                                            const std::string& name = "standard output");
 
-/// What the process returns: 2 for a usage error, 1 for every other failure.
+/// What the process returns: 2 for a usage error, 3 where what was stored is no longer so (an eye that sees otherwise
+/// than in its session), 1 for every other failure.
 [[nodiscard]] int exit_code(const hal::Error& error) noexcept;
 
 /// "compueye: place: sentence" and a line end. Control characters (a file name may hold a line break or a terminal

@@ -10,14 +10,14 @@ namespace compueye::firmware {
 
 hal::Result<AttachedBench> AttachedBench::create(const Board& board, const LightWanted& wanted, hal::Clock& clock,
                                                  Person person) {
-  TRY(light_kind(wanted.kind, false));
+  TRY(light_kind(wanted, false));
   return create(TRY(attached_eye(board, clock)), board.object, wanted, clock, std::move(person));
 }
 
 hal::Result<AttachedBench> AttachedBench::create(std::unique_ptr<device::DeviceSource> eye,
                                                  const hal::ObjectPlane& plane, const LightWanted& wanted,
                                                  hal::Clock& clock, Person person) {
-  const LightKind* const kind = TRY(light_kind(wanted.kind, false));
+  const LightKind* const kind = TRY(light_kind(wanted, false));
   AttachedBench bench;
   bench.light = TRY(kind->make(wanted, {plane, *eye, clock, std::move(person)}));
   bench.exposure.now_ns = eye->configuration().exposure_ns;

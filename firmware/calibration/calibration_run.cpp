@@ -106,7 +106,7 @@ Result<void> look(const CalibrationBench& bench, WatchedEye& eye, SessionMachine
   const hal::SampleBlock block = TRY(seen);
   TRY(bench.light.attend());
   TRY(eye.was_lost() ? machine.recovered(bench.clock.now_ns()) : machine.saw(block, bench.clock.now_ns()));
-  return go_on() ? Result<void>() : fail(ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
+  return go_on() ? Result<void>() : fail(ErrorCode::interrupted, "calibrate", "was stopped");
 }
 
 using Keep = std::function<Result<void>(const calib::Capture&)>;
@@ -185,13 +185,14 @@ Result<std::int64_t> run_calibration(const CalibrationRequest& request, const Ca
   TRY(set_exposure(request, bench, file, watch));
   TRY(bench.eye.start());
   WatchedEye eye(bench.eye, bench.clock);
-  const auto ended = [&]() -> Result<std::int64_t> {
+  Begun begun;
+  auto ended = [&]() -> Result<std::int64_t> {
     const std::uint32_t config_id = TRY(eye.next([&] { return watch({}); })).config_id;
     const calib::SessionEye seen{described.channels, described.bits, config_id};
     // Made before the file is touched: a plan that cannot be carried out leaves no session.
     TRY(SessionMachine::create(request.plan, seen, display.rows, display.cols, {}, 0));
     const calib::Session session = session_of(request, bench, config_id);
-    Begun begun = TRY(begin(request, session, file));
+    begun = TRY(begin(request, session, file));
     auto machine =
         TRY(SessionMachine::create(request.plan, seen, display.rows, display.cols, begun.done, bench.clock.now_ns()));
     const auto keep = [&](const calib::Capture& capture) -> Result<void> {
@@ -204,6 +205,7 @@ Result<std::int64_t> run_calibration(const CalibrationRequest& request, const Ca
     return begun.id;
   }();
   bench.eye.stop();
+  if (!ended && begun.id != 0) ended.error().sentence += "; --resume goes on with the session";
   return ended;
 }
 

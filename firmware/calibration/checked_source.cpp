@@ -39,7 +39,7 @@ Result<void> CheckedSource::do_start() {
   scene_from_ns_ = std::numeric_limits<std::int64_t>::min();
   passed_ns_ = 0;
   outages_ = delivered_ = 0;
-  due_ = withheld_ = checking_ = false;
+  due_ = withheld_ = checking_ = again_ = false;
   checked_ = 0;
   return source_.start();
 }
@@ -86,11 +86,12 @@ void CheckedSource::pass_time(const hal::SampleBlock& block) noexcept {
     passed_ns_ += block.t_ns - last_ns_;
   }
   last_ns_ = block.t_ns;
-  due_ = passed_ns_ >= settings_.every_ns;
+  due_ = again_ || passed_ns_ >= settings_.every_ns;
 }
 
 void CheckedSource::begin() {
   checking_ = true;
+  again_ = false;
   const hal::SourceDescription& eye = source_.describe();
   passed_ns_ = 0;
   tries_ = 0;

@@ -57,6 +57,8 @@ class CheckedSource final : public hal::SampleSource {
   [[nodiscard]] const std::atomic<std::uint64_t>& checked() const noexcept { return checked_; }
   /// From a check's beginning to the next frame of the scene.
   [[nodiscard]] const std::atomic<bool>& checking() const noexcept { return checking_; }
+  /// The next check comes with the next frame of the scene.
+  void look_again() noexcept { again_ = true; }
   /// The oldest one that was not asked for.
   [[nodiscard]] std::optional<CheckLook> next_look();
 
@@ -92,6 +94,7 @@ class CheckedSource final : public hal::SampleSource {
   std::uint64_t outages_ = 0, delivered_ = 0;
   std::atomic<std::uint64_t> checked_ = 0;
   std::atomic<bool> checking_ = false;
+  std::atomic<bool> again_ = false;
   bool due_ = false, withheld_ = false;
 
   std::optional<calib::SessionMachine> machine_;  // while it looks

@@ -21,7 +21,7 @@ using Light = Result<std::unique_ptr<hal::Illuminator>>;
 
 /// Whoever waits beside a running eye reads it, so that its frames do not pile up and it is got back when it is lost.
 Result<void> keep_reading(const LightSite& site, std::int64_t wait_ns) {
-  if (!site.person.go_on()) return hal::fail(ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
+  if (!site.person.go_on()) return hal::fail(ErrorCode::interrupted, "calibrate", "was stopped");
   const std::int64_t until_ns = site.clock.now_ns() + wait_ns;
   if (!site.eye.started()) {
     site.clock.sleep_until_ns(until_ns);
@@ -34,7 +34,7 @@ Result<void> keep_reading(const LightSite& site, std::int64_t wait_ns) {
 
 Light display(const LightWanted& wanted, const LightSite& site) {
   auto light = TRY(illuminator::DisplayLight::create(
-      {site.plane.rows, site.plane.cols, wanted.monitor, wanted.in_window}, site.clock));
+      {site.plane.rows, site.plane.cols, wanted.monitor.value_or(0), wanted.in_window}, site.clock));
   const illuminator::CentredPicture& place = light->place();
   site.person.tell(fmt::format(
       "patterns are {} x {} pixels of the monitor, {} of each to a side of the pattern's own; the board has "
@@ -67,8 +67,8 @@ Light manual(const LightWanted& wanted, const LightSite& site) {
   illuminator::ManualSettings settings;
   settings.rows = site.plane.rows;
   settings.cols = site.plane.cols;
-  settings.file = wanted.picture;
-  settings.write = [file = wanted.picture](const hal::Image& picture) { return write_png(file, picture); };
+  settings.file = wanted.picture.empty() ? "pattern.png" : wanted.picture;
+  settings.write = [file = settings.file](const hal::Image& picture) { return write_png(file, picture); };
   settings.tell = site.person.tell;
   settings.meanwhile = [site] { return keep_reading(site, wait_ns); };
   settings.input = site.person.terminal;
@@ -76,13 +76,14 @@ Light manual(const LightWanted& wanted, const LightSite& site) {
 }
 
 constexpr std::array kinds{
-    LightKind{"sim", "a simulated display before a simulated eye, as --scene has it", Around::dark, true, nullptr},
+    LightKind{"sim", "a simulated display before a simulated eye, as --scene has it", Around::dark, true, false, false,
+              nullptr},
     LightKind{"display", "a monitor or projector of this machine, all of it or with --window a part", Around::scene,
-              true, display},
+              true, true, false, display},
     LightKind{"device", "lamps of the eye's own device, one for each pixel of the object plane", Around::scene, true,
-              device},
+              false, false, device},
     LightKind{"manual", "you: the pattern is written to --picture, and Enter says that it is before the eye",
-              Around::scene, false, manual},
+              Around::scene, false, false, true, manual},
 };
 
 }  // namespace
@@ -97,13 +98,24 @@ std::vector<std::string_view> light_names() {
   return names;
 }
 
-Result<const LightKind*> light_kind(std::string_view name, bool simulated_eye) {
-  if (name.empty()) name = simulated_eye ? "sim" : "display";
+Result<const LightKind*> light_kind(const LightWanted& wanted, bool simulated_eye) {
+  const std::string_view name = !wanted.kind.empty() ? std::string_view(wanted.kind)
+                                : simulated_eye      ? "sim"
+                                                     : "display";
   const auto* const found =
       std::find_if(kinds.begin(), kinds.end(), [&](const auto& each) { return each.name == name; });
-  if (found != kinds.end() && (found->make == nullptr) == simulated_eye) return found;
-  return hal::fail(ErrorCode::usage, "--light",
-                   fmt::format("'{}' is no light that {} eye sees", name, simulated_eye ? "a simulated" : "a real"));
+  if (found == kinds.end() || (found->make == nullptr) != simulated_eye) {
+    return fail(ErrorCode::usage, "--light",
+                fmt::format("'{}' is no light that {} eye sees", name, simulated_eye ? "a simulated" : "a real"));
+  }
+  const auto other = [&](std::string_view option) {
+    return fail(ErrorCode::usage, std::string(option),
+                fmt::format("means nothing to the light '{}'; leave it out, or see --light", name));
+  };
+  if (wanted.monitor && !found->on_monitor) return other("--monitor");
+  if (wanted.in_window && !found->on_monitor) return other("--window");
+  if (!wanted.picture.empty() && !found->by_picture) return other("--picture");
+  return found;
 }
 
 std::string light_reference() {

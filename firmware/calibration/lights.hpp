@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,10 +20,10 @@ namespace compueye::firmware {
 
 /// What a person says of the light.
 struct LightWanted {
-  std::string kind;                     ///< of light_kinds()
-  int monitor = 0;                      ///< of a display
-  bool in_window = false;               ///< of a display
-  std::string picture = "pattern.png";  ///< that light by hand is asked for with
+  std::string kind = {};            ///< of light_kinds()
+  std::optional<int> monitor = {};  ///< of a display: 0 if nothing is said
+  bool in_window = false;           ///< of a display
+  std::string picture = {};         ///< that light by hand is asked for with: "pattern.png" if nothing is said
 };
 
 /// Whoever calibrates.
@@ -46,15 +47,17 @@ struct LightKind {
   std::string_view meaning;  ///< for --help and docs/calibration.md
   Around around;             ///< what it leaves to be seen beside itself
   bool by_itself;            ///< needs nobody, so that it may check a running eye
+  bool on_monitor;           ///< --monitor and --window are of it
+  bool by_picture;           ///< --picture is
   /// Before an eye on a cable; null: before simulated ones only. Errors: those of the light.
   hal::Result<std::unique_ptr<hal::Illuminator>> (*make)(const LightWanted& wanted, const LightSite& site);
 };
 [[nodiscard]] std::span<const LightKind> light_kinds() noexcept;
 [[nodiscard]] std::vector<std::string_view> light_names();
 
-/// The row of this name; with an empty one that which people mean. Error usage (at --light): a light that this eye
-/// cannot see.
-[[nodiscard]] hal::Result<const LightKind*> light_kind(std::string_view name, bool simulated_eye);
+/// The row of the wanted kind; with an empty one that which people mean. Errors usage: a light that this eye cannot see
+/// (at --light), and what is said of another light than that (at its option).
+[[nodiscard]] hal::Result<const LightKind*> light_kind(const LightWanted& wanted, bool simulated_eye);
 
 /// The table of docs/calibration.md.
 [[nodiscard]] std::string light_reference();

@@ -17,16 +17,12 @@ hal::Result<hal::SampleBlock> WatchedEye::next(const std::function<bool()>& go_o
   for (;;) {
     auto block = source_.read(clock_.now_ns() + wait_ns);
     if (block) return order_.ordered(*block);
-    if (block.error().code == hal::ErrorCode::disconnected) {
-      block.error().sentence += "; --resume goes on with the session";
-    }
     if (block.error().code != hal::ErrorCode::timeout) return block;
-    if (!go_on()) return hal::fail(hal::ErrorCode::interrupted, "calibrate", "was stopped; --resume goes on");
+    if (!go_on()) return hal::fail(hal::ErrorCode::interrupted, "calibrate", "was stopped");
     // It bounds that itself, and has a stream to wait for when it is over.
     if (source_.recovering()) waiting_since_ns = clock_.now_ns();
     if (clock_.now_ns() - waiting_since_ns < no_frame_ns) continue;
-    return hal::fail(hal::ErrorCode::timeout, source_.describe().serial,
-                     "gave no frame for 10 s: see to its cable, and go on with --resume");
+    return hal::fail(hal::ErrorCode::timeout, source_.describe().serial, "gave no frame for 10 s: see to its cable");
   }
 }
 

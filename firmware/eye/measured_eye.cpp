@@ -178,10 +178,10 @@ Result<void> check_is_of(const calib::EyeFile& file, const Board& board) {
                                      : same_serial(file.path(), file.eye().serial, board.source.serial);
 }
 
-Result<MeasuredRows> measured_rows(const Board& board) {
+Result<MeasuredRows> measured_rows(const Board& board, const recon::Progress& progress) {
   const auto file = TRY(calib::EyeFile::open(board.eye_path(), calib::EyeFileMode::read));
   TRY(check_is_of(file, board));
-  return made_ready(file, TRY(rows_at(file, board.object.distance_mm)));
+  return made_ready(file, TRY(rows_at(file, board.object.distance_mm, progress)));
 }
 
 Result<std::optional<double>> measured_exposure_s(const Board& board) {
@@ -193,9 +193,10 @@ Result<std::optional<double>> measured_exposure_s(const Board& board) {
   return exposure_s(file, TRY(file.load_estimate(chosen.nearer.id)));
 }
 
-Result<MeasuredRows> newest_rows(const std::string& path, std::optional<double> distance_mm) {
+Result<MeasuredRows> newest_rows(const std::string& path, std::optional<double> distance_mm,
+                                 const recon::Progress& progress) {
   const auto file = TRY(calib::EyeFile::open(path, calib::EyeFileMode::read));
-  return made_ready(file, TRY(rows_at(file, distance_mm)));
+  return made_ready(file, TRY(rows_at(file, distance_mm, progress)));
 }
 
 double fit_sigma(double noise_sigma, const MeasuredEye* eye) noexcept {

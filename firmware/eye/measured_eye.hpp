@@ -12,6 +12,7 @@
 #include "firmware/text/figures.hpp"
 #include "hal/channel_status.hpp"
 #include "hal/result.hpp"
+#include "recon/problem/progress.hpp"
 #include "recon/problem/response.hpp"
 
 namespace compueye::calib {
@@ -61,10 +62,11 @@ struct MeasuredRows {
 /// The rows of the board's eye file at the board's distance, by choose_estimate(): measured, or interpolated. Errors:
 /// those of calib::EyeFile and choose_estimate(); mismatch (a file of another eye or object plane, or of another serial
 /// than the board names; two sessions that were taken otherwise), out_of_range (no channel is good).
-[[nodiscard]] hal::Result<MeasuredRows> measured_rows(const Board& board);
+[[nodiscard]] hal::Result<MeasuredRows> measured_rows(const Board& board, const recon::Progress& progress);
 
 /// Those of a file, at that distance where one is given, else of the newest estimate. Errors: as above.
-[[nodiscard]] hal::Result<MeasuredRows> newest_rows(const std::string& file, std::optional<double> distance_mm);
+[[nodiscard]] hal::Result<MeasuredRows> newest_rows(const std::string& file, std::optional<double> distance_mm,
+                                                    const recon::Progress& progress = {});
 
 /// Of a frame of the session that those rows are of, the nearer one of two: what other frames have to be exposed like.
 /// Nothing: the session did not choose it, or the board has no eye file. Errors: as of measured_rows().

@@ -56,7 +56,7 @@ hal::Result<LivingResponse> living_response(const Board& board, const recon::Pro
   if (progress && !progress("eye file", 0.0, 0.0)) {
     return hal::fail(hal::ErrorCode::interrupted, board.name, "the set-up was stopped");
   }
-  MeasuredRows rows = TRY(measured_rows(board));
+  MeasuredRows rows = TRY(measured_rows(board, progress));
   return living_response(board, std::move(rows.response), std::make_shared<const MeasuredEye>(std::move(rows.eye)));
 }
 

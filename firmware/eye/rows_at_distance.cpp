@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -79,7 +80,8 @@ MeasuredBetween::Side told(const Side& side) {
   return {side.estimate.distance_mm, side.id, side.estimate.sessions};
 }
 
-Result<RowsAtDistance> between(const EyeFile& file, const EstimateChoice& chosen, double asked_mm) {
+Result<RowsAtDistance> between(const EyeFile& file, const EstimateChoice& chosen, double asked_mm,
+                               const recon::Progress& progress) {
   const Side nearer = TRY(side_of(file, chosen.nearer)), other = TRY(side_of(file, *chosen.other));
   const bool swapped = nearer.estimate.distance_mm > other.estimate.distance_mm;
   const Side& near = swapped ? other : nearer;
@@ -87,9 +89,10 @@ Result<RowsAtDistance> between(const EyeFile& file, const EstimateChoice& chosen
   TRY(check_alike(file, near, far, asked_mm));
   hal::ObjectPlane plane = file.eye().plane;
   plane.distance_mm = asked_mm;
-  const calib::ResponseEstimate made = calib::between_distances(
+  const auto threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
+  const calib::ResponseEstimate made = TRY(calib::between_distances(
       file.eye().geometry, plane, {near.estimate.distance_mm, near.rows, near.exposure_s.value_or(1.0)},
-      {far.estimate.distance_mm, far.rows, far.exposure_s.value_or(1.0)});
+      {far.estimate.distance_mm, far.rows, far.exposure_s.value_or(1.0)}, threads, progress));
   std::vector<std::int64_t> sessions;
   std::ranges::set_union(near.estimate.sessions, far.estimate.sessions, std::back_inserter(sessions));
   RowsAtDistance rows{nearer.id,
@@ -118,9 +121,10 @@ Result<std::optional<double>> exposure_s(const EyeFile& file, const Estimate& es
   return first ? first->exposure_s : std::optional<double>();
 }
 
-Result<RowsAtDistance> rows_at(const EyeFile& file, std::optional<double> distance_mm) {
+Result<RowsAtDistance> rows_at(const EyeFile& file, std::optional<double> distance_mm,
+                               const recon::Progress& progress) {
   const EstimateChoice chosen = TRY(choose_estimate(file, distance_mm));
-  if (chosen.other) return between(file, chosen, *distance_mm);
+  if (chosen.other) return between(file, chosen, *distance_mm, progress);
   return RowsAtDistance{chosen.nearer.id,
                         chosen.nearer.raw_hash,
                         TRY(file.load_estimate(chosen.nearer.id)),

@@ -6,6 +6,7 @@
 #include "calib/eye_file/eye_file.hpp"
 #include "firmware/eye/measured_eye.hpp"
 #include "hal/result.hpp"
+#include "recon/problem/progress.hpp"
 
 namespace compueye::firmware {
 
@@ -18,9 +19,10 @@ struct RowsAtDistance {
   std::optional<MeasuredBetween> between;
 };
 
-/// By choose_estimate(). Errors: those of it and of EyeFile; mismatch (two sessions of other configurations, or whose
-/// exposure only one knows; parts of an estimate that do not fit each other).
-[[nodiscard]] hal::Result<RowsAtDistance> rows_at(const calib::EyeFile& file, std::optional<double> distance_mm);
+/// By choose_estimate(). Errors: those of it and of EyeFile; interrupted; mismatch (two sessions of other
+/// configurations, or whose exposure only one knows; parts of an estimate that do not fit each other).
+[[nodiscard]] hal::Result<RowsAtDistance> rows_at(const calib::EyeFile& file, std::optional<double> distance_mm,
+                                                  const recon::Progress& progress);
 
 /// Of a frame of the captures that an estimate was made from. Nothing: there are none, or they did not choose it.
 [[nodiscard]] hal::Result<std::optional<double>> exposure_s(const calib::EyeFile& file,

@@ -14,8 +14,7 @@
 #include "tests/hal/units.hpp"
 
 using namespace compueye;
-using calib::Need;
-using calib::Stage;
+using calib::Need, calib::Stage;
 
 namespace {
 
@@ -394,6 +393,7 @@ TEST_CASE("a plan that makes no sense is refused by the name of its setting") {
   refused(range, "plan.warm_up_s", {"nan"}, [](P& p) { p.warm_up_s = std::nan(""); });
   refused(range, "plan.dark_frames", {"1", "2"}, [](P& p) { p.dark_frames = 1; });
   refused(range, "plan.held_out_every", {"1", "2"}, [](P& p) { p.held_out_every = 1; });
+  refused(range, "plan.held_out_every", {"5", "4"}, [](P& p) { p.patterns = 4; });
   refused(range, "plan.saturation_share", {"1.5"}, [](P& p) { p.saturation_share = 1.5; });
   refused(range, "plan", {"600000", "524287", "12"}, [](P& p) { p.frames = 600'000; });
   refused(hal::ErrorCode::not_found, "pattern", {"blob", "blobs"}, [](P& p) { p.family = "blob"; });

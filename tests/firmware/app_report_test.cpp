@@ -38,7 +38,7 @@ TEST_CASE("an error is one line on stderr and an exit code") {
   CHECK(error_line({ErrorCode::timeout, {}, {}}) == "compueye: " + std::string(hal::name(ErrorCode::timeout)) + "\n");
   for (int code = 0; code <= static_cast<int>(ErrorCode::interrupted); ++code) {
     const hal::Error error{static_cast<ErrorCode>(code), "x", "y"};
-    CHECK(exit_code(error) == (error.code == ErrorCode::usage ? 2 : 1));
+    CHECK(exit_code(error) == (error.code == ErrorCode::usage ? 2 : error.code == ErrorCode::stale ? 3 : 1));
   }
 }
 

@@ -106,7 +106,7 @@ TEST_CASE("rows between two sessions are as good as those of a session there") {
   const auto near = calibrated(at(board, 28.0), file, 1), far = calibrated(at(board, 32.0), file, 2);
   check_fields(near, kept(file, 1));
   const hal::ObjectPlane plane = at(board, 30.0).object;
-  const auto between = calib::between_distances(board.eye, plane, {28.0, kept(file, 1)}, {32.0, kept(file, 2)});
+  const auto between = calib::between_distances(board.eye, plane, {28.0, kept(file, 1)}, {32.0, kept(file, 2)}).value();
 
   REQUIRE(file.close().has_value());
   const MeasuredRows ready = newest_rows(path, 30.0).value();
@@ -169,7 +169,7 @@ TEST_CASE("what is not good in one of two is not good between them, and exposure
   calib::ResponseEstimate near = drawn_rows(board, 1.0), far = drawn_rows(board, 1.0);
   near.rows[3].status = hal::ChannelStatus::hot;
   far.rows[5].status = hal::ChannelStatus::dead;
-  const auto found = calib::between_distances(board.eye, board.object, {28.0, near}, {32.0, far});
+  const auto found = calib::between_distances(board.eye, board.object, {28.0, near}, {32.0, far}).value();
   CHECK(found.rows[3].status == hal::ChannelStatus::hot);
   CHECK(found.rows[5].status == hal::ChannelStatus::dead);
   CHECK(found.rows[5].columns.empty());
@@ -178,11 +178,23 @@ TEST_CASE("what is not good in one of two is not good between them, and exposure
 
   // Twice the exposure gives twice the light of the same rows.
   const auto longer = drawn_rows(board, 2.0);
-  const auto same = calib::between_distances(board.eye, board.object, {28.0, near, 0.001}, {32.0, longer, 0.002});
+  const auto same =
+      calib::between_distances(board.eye, board.object, {28.0, near, 0.001}, {32.0, longer, 0.002}).value();
   REQUIRE(same.rows[27].columns == found.rows[27].columns);
   for (std::size_t k = 0; k < found.rows[27].values.size(); ++k) {
     CHECK(same.rows[27].values[k] == doctest::Approx(found.rows[27].values[k]).epsilon(1e-6));
   }
   CHECK(same.dark_lsb[27] == 10.0);  // the nearer one's
+
+  // By any number of threads, as long as they are wanted.
+  const auto three = calib::between_distances(board.eye, board.object, {28.0, near}, {32.0, far}, 3).value();
+  for (std::size_t m = 0; m < found.rows.size(); ++m) {
+    CHECK(three.rows[m].values == found.rows[m].values);
+    CHECK(three.rows[m].sigmas == found.rows[m].sigmas);
+  }
+  const auto stop = [](std::string_view, double done, double) { return done < 2.0; };
+  const auto stopped = calib::between_distances(board.eye, board.object, {28.0, near}, {32.0, far}, 2, stop);
+  REQUIRE_FALSE(stopped.has_value());
+  CHECK(stopped.error().code == hal::ErrorCode::interrupted);
   CHECK(found.dark_lsb[27] == 10.0);
 }

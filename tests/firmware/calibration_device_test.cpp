@@ -169,7 +169,7 @@ TEST_CASE("light by hand gives the captures that lamps give, and a person whose 
   request.plan.patterns = 20;
   REQUIRE(lamps.run(request).has_value());
   test::TypedTerminal terminal;
-  hand.light = {"manual", 0, false, (hand.folder.path() / "next.png").string()};
+  hand.light = {"manual", std::nullopt, false, (hand.folder.path() / "next.png").string()};
   std::vector<double> seen(LitEye::pixels, 0.0);
   hand.eye.light = [&](std::size_t n) { return seen[n]; };
   hand.person.terminal = terminal.file();
@@ -189,7 +189,7 @@ TEST_CASE("light by hand gives the captures that lamps give, and a person whose 
   alone.light = hand.light;
   alone.person = hand.person;
   alone.person.tell = [&](std::string_view) { terminal.leave(); };
-  test::check_error(alone.run(request), hal::ErrorCode::end_of_stream, "terminal", {"--resume"});
+  test::check_error(alone.run(request), hal::ErrorCode::end_of_stream, "terminal", {});
 }
 
 TEST_CASE("a session on a cable goes on in another process, at the exposure that it began with") {
@@ -230,10 +230,10 @@ TEST_CASE("an exposure that the light does not call for is left alone, and one t
 }
 
 TEST_CASE("a light that an eye cannot see is refused, and every light is in the guide") {
-  CHECK(light_kind("", true).value()->name == "sim");
-  CHECK(light_kind("", false).value()->name == "display");
-  test::check_error(light_kind("sim", false), hal::ErrorCode::usage, "--light", {"'sim'"});
-  test::check_error(light_kind("display", true), hal::ErrorCode::usage, "--light", {"'display'"});
+  CHECK(light_kind(LightWanted{""}, true).value()->name == "sim");
+  CHECK(light_kind(LightWanted{""}, false).value()->name == "display");
+  test::check_error(light_kind(LightWanted{"sim"}, false), hal::ErrorCode::usage, "--light", {"'sim'"});
+  test::check_error(light_kind(LightWanted{"display"}, true), hal::ErrorCode::usage, "--light", {"'display'"});
   std::ifstream stream(test::source_path("docs/calibration.md"));
   const std::string guide{std::istreambuf_iterator<char>(stream), {}};
   INFO("docs/calibration.md should hold:\n" << light_reference());

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -29,20 +30,23 @@ namespace {
 using compueye::test::EyeInAScene;
 using compueye::test::second;
 
-/// A light that tells when it was taken away.
+/// A light that tells when it was taken away, and that may be stuck.
 class LeavingLight final : public hal::Illuminator {
  public:
-  LeavingLight(sim::SimulatedEye& eye, hal::Clock& clock, std::int64_t& gone_ns)
-      : light_(eye, clock), clock_(clock), gone_ns_(gone_ns) {}
+  LeavingLight(sim::SimulatedEye& eye, hal::Clock& clock, std::int64_t& gone_ns, const std::function<bool()>& stuck)
+      : light_(eye, clock), clock_(clock), gone_ns_(gone_ns), stuck_(stuck) {}
   ~LeavingLight() override { gone_ns_ = clock_.now_ns(); }
   [[nodiscard]] const hal::IlluminatorDescription& describe() const noexcept override { return light_.describe(); }
   [[nodiscard]] hal::Result<std::int64_t> show(std::span<const float> picture) override { return light_.show(picture); }
-  [[nodiscard]] hal::Result<std::int64_t> off() override { return light_.off(); }
+  [[nodiscard]] hal::Result<std::int64_t> off() override {
+    return stuck_() ? hal::fail(hal::ErrorCode::io, "lamp", "does not answer") : light_.off();
+  }
 
  private:
   sim::SimulatedDisplay light_;
   hal::Clock& clock_;
   std::int64_t& gone_ns_;
+  const std::function<bool()>& stuck_;
 };
 
 /// A board's eye before a scene, which the display of its session covers for checks, read in virtual time.
@@ -56,7 +60,10 @@ struct Running {
   std::vector<std::string> told;
   std::uint64_t delivered = 0;
   std::int64_t gone_ns = -second;  // of the last check's light
-  std::vector<double> means;       // of the frames that were delivered
+  std::vector<std::int64_t> looked_ns;
+  std::vector<double> means;  // of the frames that were delivered
+  std::function<bool()> enough = [] { return false; }, stuck = enough;
+  std::optional<hal::Error> ended;  // before its time
 
   Running(std::uint64_t seed, Around around) : diary(test::CalibratedEye::once().check(), around) {
     const hal::Image black(board.object.rows, board.object.cols);
@@ -70,7 +77,7 @@ struct Running {
     checks.plan = diary.check().plan();
     checks.schedule = diary.check().schedule(around);
     checks.light = [this]() -> hal::Result<std::unique_ptr<hal::Illuminator>> {
-      return std::make_unique<LeavingLight>(*eye, clock, gone_ns);
+      return std::make_unique<LeavingLight>(*eye, clock, gone_ns, stuck);
     };
     source = std::make_unique<CheckedSource>(std::move(checks), *changed, clock);
   }
@@ -78,10 +85,16 @@ struct Running {
   void run(std::int64_t for_ns) {
     REQUIRE(source->start().has_value());
     std::uint64_t next = 0, jumped = 0;
-    while (clock.now_ns() < for_ns) {
+    while (clock.now_ns() < for_ns && !enough()) {
       const auto block = source->read(clock.now_ns() + second / 10);
       while (auto look = source->next_look()) {
+        looked_ns.push_back(clock.now_ns());
         if (std::string news = diary.enter(*look); !news.empty()) told.push_back(std::move(news));
+        if (diary.wants_another()) source->look_again();
+      }
+      if (!block && block.error().code == hal::ErrorCode::io) {
+        ended = block.error();
+        break;
       }
       if (!block) {
         REQUIRE(block.error().code == hal::ErrorCode::timeout);
@@ -144,6 +157,25 @@ TEST_CASE("a gain that changes by 1 % while the eye runs is told once, and once 
   CHECK_FALSE(eye.diary.last()->changed());
 }
 
+TEST_CASE("what one look alone sees is no change, and is looked at again at once") {
+  Running eye(12, Around::dark);
+  eye.changed->gain = [&](std::int64_t, std::size_t m) { return eye.diary.looks() == 1 && m == 27 ? 0.9 : 1.0; };
+  eye.run(5 * second);
+  REQUIRE(eye.looked_ns.size() >= 3);
+  CHECK(eye.looked_ns[2] - eye.looked_ns[1] < eye.looked_ns[1] - eye.looked_ns[0] - second / 4);
+  CHECK(eye.diary.unconfirmed() == 1);
+  CHECK(eye.diary.changes() == 0);
+  CHECK(eye.told.empty());
+  CHECK(eye.diary.verdict() == "as in its session");
+  // A run that ends on such a look says no more than it knows.
+  Running last(13, Around::dark);
+  last.changed->gain = [](std::int64_t, std::size_t) { return 0.9; };
+  last.enough = [&] { return last.diary.looks() == 1; };
+  last.run(5 * second);
+  CHECK(last.told.empty());
+  CHECK(says(last.diary.verdict(), "which no other has confirmed: -10"));
+}
+
 TEST_CASE("a scene that stands still beside the lamp is taken off, and dark levels are not judged in it") {
   Running eye(7, Around::scene);
   eye.changed->scene_lsb = [](std::int64_t, std::size_t m) { return 60.0 + 10.0 * static_cast<double>(m % 7); };
@@ -191,4 +223,23 @@ TEST_CASE("an outage, and a light that fails, cost checks and no run") {
   CHECK(dim.diary.could_not_look() == dim.diary.looks());
   REQUIRE(dim.told.size() == 1);
   CHECK(says(dim.told.front(), "could not look: light: gives"));
+}
+
+TEST_CASE("no frame is the scene's before the lamp is out, and one that stays lit ends the run, which says why") {
+  Running late(14, Around::dark);
+  late.stuck = [&] { return late.clock.now_ns() < 4 * second; };
+  late.enough = [&] { return late.diary.looks() == 2; };
+  late.run(9 * second);
+  CHECK_FALSE(late.ended.has_value());
+  CHECK(late.diary.could_not_look() == 1);
+  CHECK(*std::max_element(late.means.begin(), late.means.end()) < late.board.sensor.dark_level_lsb + 3.0);
+
+  Running lit(15, Around::dark);
+  lit.stuck = [] { return true; };
+  lit.run(20 * second);
+  REQUIRE(lit.ended.has_value());
+  CHECK(says(lit.ended->text(), "cannot be put out: lamp: does not answer"));
+  CHECK(lit.clock.now_ns() > 5 * second);
+  CHECK(lit.clock.now_ns() < 10 * second);
+  CHECK(lit.source->account().balanced());
 }

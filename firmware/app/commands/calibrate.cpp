@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,6 +28,7 @@
 #include "firmware/calibration/session_estimate.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/estimate_choice.hpp"
 #include "firmware/eye/measured_eye.hpp"
 #include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/settings/board_lines.hpp"
@@ -207,6 +209,12 @@ Result<void> check_again(const CalibrateRequest& o, Board& board, Session& sessi
   TRY(check_is_of(file, board));
   const EyeCheck check = TRY(EyeCheck::create(file, board.object.distance_mm, eye_to_simulate(board).integration_s(),
                                               1.0 / board.sensor.lsb()));
+  for (const calib::StoredEstimate& each : TRY(file.estimates())) {
+    if (each.id <= check.estimate() || std::fabs(each.distance_mm - board.object.distance_mm) > same_distance_mm)
+      continue;
+    session.note(fmt::format("{}: estimate {} is newer, but of no session: the eye is compared with estimate {}", o.eye,
+                             each.id, check.estimate()));
+  }
   const auto captures = TRY(seen_now(o, board, file, check, session));
   session.end_progress();
   const calib::EyeChange change = TRY(check.judge(captures));
@@ -217,7 +225,7 @@ Result<void> check_again(const CalibrateRequest& o, Board& board, Session& sessi
 Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   Board board = TRY(load_board(o.board));
   TRY(o.overrides.apply(board));
-  TRY(light_kind(o.light.kind, board.source.simulated()));
+  TRY(light_kind(o.light, board.source.simulated()));
   TRY(need(o.scene.empty() || board.source.simulated(), "--scene", "is of a simulated display; leave it out"));
   if (o.check) return check_again(o, board, session);
   if (!o.plan.empty()) TRY(load_plan(o.plan));  // before a file is made
@@ -255,11 +263,13 @@ Action declare(OptionList& options) {
   options.flag("--resume", o->resume, "go on with a session that was cut off, or with its estimate");
   options.flag("--give-up", o->give_up, "leave a session that was cut off as it is, and begin another");
   options.at("--give-up").excludes("--resume");
-  options.flag("--check", o->check, "only ask whether the eye still sees as in its last session: 1 where it does not");
+  options.flag("--check", o->check,
+               "only ask whether the eye still sees as in its last session; the exit code is 3 where it does not");
   for (const char* other : {"--resume", "--give-up", "--plan"}) options.at("--check").excludes(other);
   options.flag("--budget", o->budget,
                "tell what errors of the rows do to pictures, also of a display beyond 4096 pixels, where that takes "
                "minutes");
+  options.at("--budget").excludes("--check");
   options.json("print one object and nothing else on stdout");
   return action_of(o, calibrate);
 }

@@ -76,7 +76,7 @@ Figures check_report(const std::string& file, const EyeCheck& check, const calib
 hal::Result<void> check_verdict(const std::string& file, const calib::EyeChange& change) {
   const std::string what = change_text(change);
   if (what.empty()) return {};
-  return hal::fail(hal::ErrorCode::mismatch, file, "is of an eye that has changed since: " + what);
+  return hal::fail(hal::ErrorCode::stale, file, "is of an eye that has changed since: " + what);
 }
 
 }  // namespace compueye::firmware

@@ -73,7 +73,8 @@ Figures report_of(const ExportRequest& o, const MeasuredRows& rows) {
 Result<void> export_rows(const ExportRequest& o, Session& session) {
   TRY(check_kind(o.out));
   TRY(try_output(o.out));
-  const MeasuredRows rows = TRY(newest_rows(o.file, o.distance_mm));
+  const MeasuredRows rows = TRY(newest_rows(o.file, o.distance_mm, session.progress()));
+  session.end_progress();
   TRY(session.check_stop());
   TRY(write(o.out, rows));
   // A stop that comes this late finds the file complete.

@@ -67,16 +67,16 @@ Result<void> check_range(const std::string& file, const recon::Response& respons
                           squares));
 }
 
-Result<recon::Response> read_rows(const ReconstructOptions& o, Inputs& inputs) {
+Result<recon::Response> read_rows(const ReconstructOptions& o, Inputs& inputs, Session& session) {
   if (!o.from_eye_file()) return read_response(o.response);
-  MeasuredRows rows = TRY(newest_rows(o.response_file(), o.distance_mm));
+  MeasuredRows rows = TRY(newest_rows(o.response_file(), o.distance_mm, session.progress()));
   inputs.measured = std::move(rows.eye);
   return std::move(rows.response);
 }
 
-Result<Inputs> read_inputs(const ReconstructOptions& o, const ProblemStatement& problem, const Session& session) {
+Result<Inputs> read_inputs(const ReconstructOptions& o, const ProblemStatement& problem, Session& session) {
   Inputs inputs;
-  recon::Response response = TRY(read_rows(o, inputs));
+  recon::Response response = TRY(read_rows(o, inputs, session));
   TRY(session.check_stop());
   const PictureSize size = problem.size.value_or(PictureSize{response.image_rows(), response.image_cols()});
   inputs.size = size;

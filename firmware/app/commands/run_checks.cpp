@@ -42,7 +42,7 @@ std::function<Light(bool quiet)> light_of(const RunOptions& options, const Board
 
 Result<void> check_wish(const RunOptions& options, const Board& board) {
   if (!options.check_every_s) return {};
-  const LightKind& kind = *TRY(light_kind(options.light.kind, board.source.simulated()));
+  const LightKind& kind = *TRY(light_kind(options.light, board.source.simulated()));
   TRY(need(kind.by_itself, "--light",
            fmt::format("is '{}', which needs a person for every picture; a running eye is checked under a light that "
                        "shows them by itself",
@@ -54,7 +54,7 @@ Result<void> check_wish(const RunOptions& options, const Board& board) {
 Result<std::unique_ptr<RunChecks>> RunChecks::create(const RunOptions& options, const Board& board, RunSource& source,
                                                      Session& session) {
   if (!options.check_every_s) return nullptr;
-  const LightKind& kind = *TRY(light_kind(options.light.kind, board.source.simulated()));
+  const LightKind& kind = *TRY(light_kind(options.light, board.source.simulated()));
   const std::string path = board.eye_path();
   const calib::EyeFile file = TRY(calib::EyeFile::open(path, calib::EyeFileMode::read));
   EyeCheck check = TRY(EyeCheck::create(file, board.object.distance_mm, eye_to_simulate(board).integration_s(),
@@ -84,6 +84,7 @@ RunChecks::RunChecks(CheckDiary diary, std::string file, double every_s, std::st
 void RunChecks::tell() {
   while (const auto look = source_.next_look()) {
     std::string news = diary_.enter(*look);
+    if (diary_.wants_another()) source_.look_again();
     if (news.empty()) continue;
     session_.note(news);
     told_.push_back(std::move(news));
@@ -98,7 +99,6 @@ void RunChecks::tell_all(RunReport& report) {
 
 Figures RunChecks::figures() const {
   const auto& last = diary_.last();
-  const std::string verdict = !last ? "none" : last->changed() ? change_text(*last) : "as in its session";
   Value failure;
   if (diary_.last_failure()) failure = figures_of(*diary_.last_failure());
   return {{"every_s", every_s_},
@@ -106,7 +106,8 @@ Figures RunChecks::figures() const {
           {"looks", diary_.looks()},
           {"could_not_look", diary_.could_not_look()},
           {"changes", diary_.changes()},
-          {"verdict", verdict},
+          {"unconfirmed", diary_.unconfirmed()},
+          {"verdict", diary_.verdict()},
           {"last", last ? Value(check_report(file_, diary_.check(), *last)) : Value()},
           {"last_failure", std::move(failure)}};
 }

@@ -80,7 +80,10 @@ class RunSource {
 
   /// Nothing: no check was asked for.
   [[nodiscard]] const CheckedSource* checks() const noexcept { return checked_.get(); }
-  /// What a check saw, from any thread.
+  /// From any thread, as what a check saw.
+  void look_again() noexcept {
+    if (checked_) checked_->look_again();
+  }
   [[nodiscard]] std::optional<CheckLook> next_look() {
     return checked_ ? checked_->next_look() : std::optional<CheckLook>();
   }

@@ -107,7 +107,7 @@ TEST_CASE("a window leaves the rest of the screen alone, and is missed when it i
     const auto pixels = screen.pixels();
     CHECK(std::count(pixels.begin(), pixels.end(), 0xFFFFFFU) == 150 * 150);
     sent(static_cast<std::uint8_t>(event));
-    test::check_error(light->attend(), hal::ErrorCode::disconnected, "display", {"--resume"});
+    test::check_error(light->attend(), hal::ErrorCode::disconnected, "display", {});
   }
   const auto light = DisplayLight::create({2, 2, 0, true}, clock).value();
   REQUIRE(light->show(white).has_value());
@@ -116,7 +116,7 @@ TEST_CASE("a window leaves the rest of the screen alone, and is missed when it i
   for (std::uint32_t id = 1; id < 100 && window == nullptr; ++id) window = SDL_GetWindowFromID(id);
   REQUIRE(window != nullptr);
   SDL_SetWindowPosition(window, 3, 4);
-  test::check_error(light->attend(), hal::ErrorCode::disconnected, "display", {"moved", "--resume"});
+  test::check_error(light->attend(), hal::ErrorCode::disconnected, "display", {"moved"});
 }
 
 TEST_CASE("a monitor that is not there, a picture that is too large and one of another size are refused") {

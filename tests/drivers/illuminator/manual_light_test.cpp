@@ -101,9 +101,9 @@ TEST_CASE("what is no terminal, and one whose input ends, are errors that say so
   {
     const auto light = illuminator::ManualLight::create(person.settings(), clock).value();
     person.answer = "\x04";  // Ctrl-D
-    test::check_error(light->show(white), hal::ErrorCode::end_of_stream, "terminal", {"--resume"});
+    test::check_error(light->show(white), hal::ErrorCode::end_of_stream, "terminal", {});
     person.terminal.leave();
-    test::check_error(light->show(white), hal::ErrorCode::end_of_stream, "terminal", {"--resume"});
+    test::check_error(light->show(white), hal::ErrorCode::end_of_stream, "terminal", {});
     test::check_error(light->show(std::vector<float>(3, 1.0F)), hal::ErrorCode::mismatch, "picture", {"3", "4"});
   }
 }

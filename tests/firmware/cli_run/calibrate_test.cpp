@@ -73,7 +73,7 @@ TEST_CASE("what a session measured is estimated by --resume where a stop came be
   std::vector<std::string> changed = check;
   changed.insert(changed.end(), {"--scene", other.string(), "--json"});
   const Ended shining = test::compueye(changed);
-  CHECK(shining.exit_code == 1);
+  CHECK(shining.exit_code == 3);
   CHECK(contains(shining.err, "has changed"));
   CHECK(nlohmann::json::parse(shining.out)["gain"]["value"].get<double>() > 0.001);
   // Another distance goes into the same file, and neither stands for the other.
@@ -125,9 +125,20 @@ TEST_CASE("a session of an eye that is not there, and before a light that it can
   CHECK(display.exit_code == 2);
   CHECK(contains(display.err, "--light"));
   CHECK(with({"--light", "lamp"}).exit_code == 2);
+  const auto other_light = [&](const std::vector<std::string>& options) {
+    const Ended ended = with(options);
+    CHECK(ended.exit_code == 2);
+    CHECK_MESSAGE(contains(ended.err, options[0] + ": means nothing to the light 'sim'"), ended.err);
+  };
+  other_light({"--monitor", "0"});
+  other_light({"--window"});
+  other_light({"--picture", "a.png"});
+  CHECK(with({"--check", "--budget"}).exit_code == 2);
   board.change("kind = \"sim\"", "kind = \"usb\"");
   CHECK(with({"--light", "sim"}).exit_code == 2);
   CHECK(with({"--scene", "a.toml"}).exit_code == 2);
+  CHECK(with({"--light", "manual", "--monitor", "0"}).exit_code == 2);
+  CHECK(with({"--light", "device", "--picture", "a.png"}).exit_code == 2);
   const Ended absent = with({});
   CHECK(absent.exit_code == 1);
   CHECK(contains(absent.err, "SIM-8X8"));
