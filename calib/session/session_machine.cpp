@@ -53,11 +53,7 @@ std::int32_t largest_code(int bits) {
 Result<SessionMachine> SessionMachine::create(const SessionPlan& plan, const SessionEye& eye, int rows, int cols,
                                               const Resumed& resumed, std::int64_t now_ns) {
   TRY(validate(plan));
-  if (plan.patterns < plan.held_out_every) {
-    return fail(ErrorCode::out_of_range, "plan.held_out_every",
-                "is " + std::to_string(plan.held_out_every) + " with " + std::to_string(plan.patterns) +
-                    " patterns, so that none is held out to judge the estimate: expected 2 to the number of patterns");
-  }
+  TRY(check_judged(plan));
   return create(plan, eye, capture_schedule(plan, rows, cols), resumed, now_ns);
 }
 

@@ -37,5 +37,7 @@ struct SessionPlan {
 
 /// Errors: out_of_range names the setting and its range; not_found: the family, with the nearest.
 [[nodiscard]] hal::Result<void> validate(const SessionPlan& plan);
+/// That patterns are held out to judge the estimate by. Error: out_of_range.
+[[nodiscard]] hal::Result<void> check_judged(const SessionPlan& plan);
 
 }  // namespace compueye::calib

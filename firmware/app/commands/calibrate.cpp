@@ -228,7 +228,11 @@ Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   TRY(light_kind(o.light, board.source.simulated()));
   TRY(need(o.scene.empty() || board.source.simulated(), "--scene", "is of a simulated display; leave it out"));
   if (o.check) return check_again(o, board, session);
-  if (!o.plan.empty()) TRY(load_plan(o.plan));  // before a file is made
+  if (!o.plan.empty()) {  // before a file is made
+    const calib::SessionPlan plan = TRY(load_plan(o.plan));
+    TRY(calib::validate(plan));
+    TRY(calib::check_judged(plan));
+  }
   std::optional<calib::EyeFile> file;
   Teller teller(session);
   const calib::StoredSession done = TRY(taken(o, board, file, session, teller));

@@ -134,6 +134,10 @@ TEST_CASE("a session of an eye that is not there, and before a light that it can
   other_light({"--window"});
   other_light({"--picture", "a.png"});
   CHECK(with({"--check", "--budget"}).exit_code == 2);
+  const auto few = board.outside("few.toml");
+  std::ofstream(few) << "[patterns]\ncount = 4\n";
+  CHECK(contains(with({"--plan", few.string()}).err, "plan.held_out_every"));
+  CHECK_FALSE(std::filesystem::exists(eye));
   board.change("kind = \"sim\"", "kind = \"usb\"");
   CHECK(with({"--light", "sim"}).exit_code == 2);
   CHECK(with({"--scene", "a.toml"}).exit_code == 2);
