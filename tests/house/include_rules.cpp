@@ -16,7 +16,7 @@ constexpr std::string_view not_on_the_frame_path =
     "any regex memory_resource new cstdlib stdlib.h thread mutex shared_mutex condition_variable future coroutine";
 
 // "Who may include whom": the house's table, a row a folder.
-constexpr std::array<FolderRule, 28> rules{{
+constexpr std::array<FolderRule, 29> rules{{
     {"hal", "hal", "tl-expected", false, none, false,
      "hal is contracts only: the standard library and tl::expected, no other folder, no OS header"},
 
@@ -31,6 +31,8 @@ constexpr std::array<FolderRule, 28> rules{{
      "drivers/transport: hal, drivers/protocol, and one third-party library a file"},
     {"drivers/device", "hal drivers/protocol drivers/device", none, true, none, false,
      "drivers/device: hal and drivers/protocol; the transport comes in as hal::ByteTransport"},
+    {"drivers/frontend", "hal drivers/protocol/crc16.hpp drivers/frontend", none, false, none, false,
+     "drivers/frontend is what a converter says and hears: hal, the CRC of the protocol and the standard library"},
     {"drivers/illuminator", "hal drivers/protocol drivers/illuminator", "SDL2", true, none, true,
      "drivers/illuminator: hal, drivers/protocol, and one third-party library a file"},
     {"drivers/recording", "hal drivers/protocol drivers/recording", none, true, none, false,
