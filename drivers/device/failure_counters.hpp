@@ -1,11 +1,9 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <string_view>
-#include <vector>
 
+#include "drivers/device/counter_set.hpp"
 #include "hal/counter.hpp"
 
 namespace compueye::device {
@@ -64,27 +62,6 @@ inline constexpr std::array failure_rows{
 #undef COMPUEYE_FAILURES
 
 /// How often each has happened.
-class FailureCounters {
- public:
-  std::uint64_t& operator[](Failure failure) noexcept { return counts_[static_cast<std::size_t>(failure)]; }
-  std::uint64_t operator[](Failure failure) const noexcept { return counts_[static_cast<std::size_t>(failure)]; }
-
-  /// All of those that are no deeds.
-  [[nodiscard]] std::uint64_t faults() const noexcept {
-    std::uint64_t faults = 0;
-    for (std::size_t k = 0; k < counts_.size(); ++k) faults += failure_rows[k].fault ? counts_[k] : 0;
-    return faults;
-  }
-
-  /// All of them, with their names.
-  [[nodiscard]] std::vector<hal::Counter> counters() const {
-    std::vector<hal::Counter> counters(failure_rows.begin(), failure_rows.end());
-    for (std::size_t k = 0; k < counters.size(); ++k) counters[k].count = counts_[k];
-    return counters;
-  }
-
- private:
-  std::array<std::uint64_t, failure_rows.size()> counts_{};
-};
+using FailureCounters = CounterSet<Failure, failure_rows>;
 
 }  // namespace compueye::device

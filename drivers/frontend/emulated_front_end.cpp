@@ -1,0 +1,286 @@
+#include "drivers/frontend/emulated_front_end.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace compueye::frontend {
+namespace {
+
+constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+constexpr std::size_t bits_of_byte = 8;
+
+bool bit_of(std::span<const std::byte> bytes, std::size_t bit) {
+  return bytes.empty() || (std::to_integer<unsigned>(bytes[bit / bits_of_byte]) >> (7 - bit % bits_of_byte) & 1U) != 0;
+}
+
+void set_bit(std::span<std::byte> bytes, std::size_t bit, bool level) {
+  if (bytes.empty()) return;
+  const auto mask = static_cast<std::byte>(1U << (7 - bit % bits_of_byte));
+  std::byte& byte = bytes[bit / bits_of_byte];
+  byte = level ? byte | mask : byte & ~mask;
+}
+
+}  // namespace
+
+EmulatedFrontEnd::EmulatedFrontEnd(EmulatedFrontEndSettings settings, std::int64_t now_ns)
+    : settings_(std::move(settings)), now_ns_(now_ns), host_origin_ns_(now_ns) {
+  for (int chip = 0; chip < settings_.front_end.chips; ++chip) chips_.push_back(settings_.chip->emulate());
+  edges_.reserve(settings_.kernel_edges);
+  codes_.resize(static_cast<std::size_t>(settings_.chip->channels) * chips_.size());
+  power_on(now_ns);
+}
+
+double EmulatedFrontEnd::period_ns() const noexcept {
+  return 1e9 / settings_.front_end.frame_rate_hz * (1.0 + drift_);
+}
+
+void EmulatedFrontEnd::power_on(std::int64_t now_ns) {
+  for (auto& chip : chips_) chip->power_on();
+  next_ns_ = static_cast<double>(now_ns) + period_ns();
+}
+
+void EmulatedFrontEnd::begin(const FrontEndFault& fault) {
+  switch (fault.kind) {
+    case FrontEndFaultKind::clock_drift:
+      drift_ = static_cast<double>(fault.value) * 1e-6;
+      return;
+    case FrontEndFaultKind::other_chip:
+      impostor_ = front_ends()[static_cast<std::size_t>(fault.value)]->emulate();
+      impostor_->power_on();
+      return;
+    case FrontEndFaultKind::gone:
+      gone_until_ns_ = fault.duration_ns == 0 ? never : fault.at_ns + fault.duration_ns;
+      return;
+    case FrontEndFaultKind::edge_storm:
+      storm_next_ns_ = fault.at_ns;
+      break;
+    default:
+      break;
+  }
+  under_way_.push_back(fault);
+}
+
+void EmulatedFrontEnd::advance(std::int64_t now_ns) {
+  for (;;) {
+    // What happens first: a fault, the return of what was gone, a conversion, an edge of a storm.
+    const auto fault = std::min_element(waiting_.begin(), waiting_.end(),
+                                        [](const auto& a, const auto& b) { return a.at_ns < b.at_ns; });
+    const std::int64_t fault_ns = fault == waiting_.end() ? never : std::max(fault->at_ns, now_ns_);
+    const std::int64_t back_ns = gone_until_ns_ == 0 ? never : gone_until_ns_;
+    const std::int64_t conversion_ns = settings_.chip->data_ready ? static_cast<std::int64_t>(next_ns_) : never;
+    const FrontEndFault* const storm = lasting(FrontEndFaultKind::edge_storm);
+    const std::int64_t storm_ns = storm == nullptr ? never : storm_next_ns_;
+    const std::int64_t first_ns = std::min(std::min(fault_ns, back_ns), std::min(conversion_ns, storm_ns));
+    if (first_ns > now_ns) break;
+    now_ns_ = std::max(now_ns_, first_ns);
+    std::erase_if(under_way_, [&](const FrontEndFault& each) {
+      return each.duration_ns > 0 && now_ns_ >= each.at_ns + each.duration_ns;
+    });
+    if (first_ns == fault_ns) {
+      FrontEndFault begun = *fault;
+      begun.at_ns = now_ns_;
+      waiting_.erase(fault);
+      begin(begun);
+    } else if (first_ns == back_ns) {
+      gone_until_ns_ = 0;
+      power_on(now_ns_);
+    } else if (first_ns == conversion_ns) {
+      next_ns_ += period_ns();
+      if (gone_until_ns_ == 0) convert(converted_++);
+    } else if (storm != nullptr) {
+      storm_next_ns_ += std::max<std::int64_t>(storm->value, 1);
+      edge(first_ns, true);
+    }
+  }
+  now_ns_ = std::max(now_ns_, now_ns);
+  std::erase_if(under_way_, [&](const FrontEndFault& each) {
+    return each.duration_ns > 0 && now_ns_ >= each.at_ns + each.duration_ns;
+  });
+}
+
+/// A conversion is complete; chips that say so have their edge.
+void EmulatedFrontEnd::convert(std::uint64_t index) {
+  settings_.samples(index, codes_);
+  const auto channels = static_cast<std::size_t>(settings_.chip->channels);
+  for (std::size_t chip = 0; chip < chips_.size(); ++chip) {
+    chips_[chip]->convert(std::span(codes_).subspan(chip * channels, channels));
+  }
+  if (impostor_) {
+    const std::vector<std::int32_t> zeros(256);
+    impostor_->convert(zeros);
+  }
+  if (!settings_.chip->data_ready || !reset_high_) return;
+  if (lasting(FrontEndFaultKind::edges_stuck) != nullptr || count_down(FrontEndFaultKind::edges_missed)) return;
+  const bool queued = !count_down(FrontEndFaultKind::edges_unqueued);
+  edge(now_ns_, queued);
+  const FrontEndFault* const doubled = lasting(FrontEndFaultKind::edges_doubled);
+  if (doubled == nullptr) return;
+  const std::int64_t behind_ns = doubled->value;
+  static_cast<void>(count_down(FrontEndFaultKind::edges_doubled));
+  edge(now_ns_ + behind_ns, true);
+}
+
+void EmulatedFrontEnd::edge(std::int64_t t_ns, bool queued) {
+  ++edges_counted_;
+  if (!queued || edges_.size() >= settings_.kernel_edges) return;
+  edges_.push_back({t_ns, settings_.counted_edges ? std::optional(edges_counted_) : std::nullopt});
+}
+
+/// Whether such a fault is under way that has times left; one is then gone.
+bool EmulatedFrontEnd::count_down(FrontEndFaultKind kind) noexcept {
+  const auto found =
+      std::find_if(under_way_.begin(), under_way_.end(), [&](const FrontEndFault& each) { return each.kind == kind; });
+  if (found == under_way_.end()) return false;
+  if (--found->count == 0) under_way_.erase(found);
+  return true;
+}
+
+const FrontEndFault* EmulatedFrontEnd::lasting(FrontEndFaultKind kind) const noexcept {
+  const auto found =
+      std::find_if(under_way_.begin(), under_way_.end(), [&](const FrontEndFault& each) { return each.kind == kind; });
+  return found == under_way_.end() ? nullptr : &*found;
+}
+
+bool EmulatedFrontEnd::present(std::int64_t now_ns) {
+  advance(now_ns);
+  return gone_until_ns_ == 0;
+}
+
+std::uint64_t EmulatedFrontEnd::converted(std::int64_t now_ns) {
+  advance(now_ns);
+  return converted_;
+}
+
+std::int64_t EmulatedFrontEnd::duration_of(std::span<const hal::SpiSegment> segments) const noexcept {
+  const double clock_hz =
+      settings_.front_end.clock_hz != 0 ? settings_.front_end.clock_hz : settings_.chip->spi.clock_hz;
+  double ns = 0.0;
+  for (const hal::SpiSegment& each : segments) {
+    ns += static_cast<double>(each.bytes() * bits_of_byte) / clock_hz * 1e9 + 1e3 * each.pause_us;
+  }
+  if (const FrontEndFault* slow = lasting(FrontEndFaultKind::slow_bus)) ns += static_cast<double>(slow->value);
+  return static_cast<std::int64_t>(ns);
+}
+
+/// A clock to whoever is selected; what comes back. Nobody at the address: the pull-up.
+bool EmulatedFrontEnd::clock_chips(bool in) noexcept {
+  if (impostor_) return impostor_->clock(in);
+  if (!settings_.chip->chain) return selected_ >= chips_.size() || chips_[selected_]->clock(in);
+  bool level = false;  // the last one's input is tied low
+  for (auto chip = chips_.rbegin(); chip != chips_.rend(); ++chip) level = (*chip)->clock(level);
+  return level;
+}
+
+void EmulatedFrontEnd::move(const hal::SpiSegment& segment, std::size_t& bit, std::size_t bits) {
+  const auto at = [&](FrontEndFaultKind kind) {
+    const FrontEndFault* const fault = lasting(kind);
+    return fault != nullptr && static_cast<std::size_t>(fault->value) % bits == bit;
+  };
+  for (std::size_t k = 0; k < segment.bytes() * bits_of_byte; ++k, ++bit) {
+    if (const FrontEndFault* brown = lasting(FrontEndFaultKind::brown_out);
+        brown != nullptr && bit % bits_of_byte == 0 &&
+        static_cast<std::size_t>(brown->value >> 8) == bit / bits_of_byte) {
+      chips_[static_cast<std::size_t>(brown->value & 0xff) % chips_.size()]->power_on();
+      static_cast<void>(count_down(FrontEndFaultKind::brown_out));
+    }
+    if (at(FrontEndFaultKind::select_glitch)) {
+      for (auto& chip : chips_) {
+        chip->release();
+        chip->select();
+      }
+    }
+    const bool out = !segment.out.empty() && bit_of(segment.out, k);
+    bool in = true;
+    if (!at(FrontEndFaultKind::clock_lost)) in = clock_chips(out);
+    if (at(FrontEndFaultKind::clock_doubled)) in = clock_chips(out);
+    if (at(FrontEndFaultKind::bit_error)) in = !in;
+    if (lasting(FrontEndFaultKind::miso_low) != nullptr) in = false;
+    if (lasting(FrontEndFaultKind::miso_high) != nullptr) in = true;
+    set_bit(segment.in, k, in);
+  }
+}
+
+EmulatedFrontEnd::Outcome EmulatedFrontEnd::exchange(std::span<const hal::SpiSegment> segments, std::int64_t now_ns) {
+  advance(now_ns);
+  if (gone_until_ns_ != 0) return Outcome::gone;
+  if (count_down(FrontEndFaultKind::bus_error)) return Outcome::failed;
+  if (!settings_.chip->data_ready && selected_ == 0) {
+    converted_ = static_cast<std::uint64_t>(static_cast<double>(now_ns - host_origin_ns_) / period_ns());
+    convert(converted_);
+  }
+  std::size_t bits = 0, bit = 0;
+  for (const hal::SpiSegment& each : segments) bits += each.bytes() * bits_of_byte;
+  bool selected = false;
+  const auto chip_select = [&](bool down) {
+    if (down == selected) return;
+    selected = down;
+    const auto move_pin = [&](ChipEmulator& chip) { down ? chip.select() : chip.release(); };
+    if (impostor_) return move_pin(*impostor_);
+    for (std::size_t chip = 0; chip < chips_.size(); ++chip) {
+      if (settings_.chip->chain || chip == selected_) move_pin(*chips_[chip]);
+    }
+  };
+  for (const hal::SpiSegment& each : segments) {
+    chip_select(true);
+    move(each, bit, std::max<std::size_t>(bits, 1));
+    if (each.release) chip_select(false);
+  }
+  chip_select(false);
+  for (const FrontEndFaultKind kind :
+       {FrontEndFaultKind::select_glitch, FrontEndFaultKind::clock_lost, FrontEndFaultKind::clock_doubled,
+        FrontEndFaultKind::bit_error, FrontEndFaultKind::slow_bus}) {
+    static_cast<void>(count_down(kind));
+  }
+  return count_down(FrontEndFaultKind::answer_lost) ? Outcome::failed : Outcome::done;
+}
+
+EmulatedFrontEnd::Outcome EmulatedFrontEnd::exchange_settings(std::span<const hal::SpiSegment> segments,
+                                                              std::int64_t now_ns) {
+  advance(now_ns);
+  if (gone_until_ns_ != 0) return Outcome::gone;
+  for (const hal::SpiSegment& each : segments) {
+    for (std::size_t k = 0; k < each.bytes() * bits_of_byte; ++k) {
+      const bool out = !each.out.empty() && bit_of(each.out, k);
+      for (auto& chip : chips_) chip->settings_clock(out);
+      set_bit(each.in, k, true);
+    }
+  }
+  return Outcome::done;
+}
+
+void EmulatedFrontEnd::reset_level(bool high, std::int64_t now_ns) {
+  advance(now_ns);
+  if (high && !reset_high_) {
+    for (auto& chip : chips_) chip->reset_pin();
+    next_ns_ = static_cast<double>(now_ns) + period_ns();
+    std::erase_if(under_way_, [](const FrontEndFault& each) {
+      return each.kind == FrontEndFaultKind::edges_stuck && each.duration_ns == 0;
+    });
+  }
+  reset_high_ = high;
+}
+
+void EmulatedFrontEnd::clear_edges() noexcept {
+  edges_.clear();
+  edges_counted_ = 0;
+}
+
+std::optional<hal::Edge> EmulatedFrontEnd::take_edge(std::int64_t now_ns) {
+  advance(now_ns);
+  if (edges_.empty() || edges_.front().t_ns > now_ns) return std::nullopt;
+  const hal::Edge edge = edges_.front();
+  edges_.erase(edges_.begin());
+  return edge;
+}
+
+std::int64_t EmulatedFrontEnd::next_edge_ns(std::int64_t now_ns) {
+  advance(now_ns);
+  std::int64_t next_ns = static_cast<std::int64_t>(next_ns_);
+  if (!edges_.empty()) next_ns = std::min(next_ns, edges_.front().t_ns);
+  if (lasting(FrontEndFaultKind::edge_storm) != nullptr) next_ns = std::min(next_ns, storm_next_ns_);
+  for (const FrontEndFault& each : waiting_) next_ns = std::min(next_ns, each.at_ns);
+  return std::max(next_ns, now_ns + 1);
+}
+
+}  // namespace compueye::frontend
