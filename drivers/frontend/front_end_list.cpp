@@ -2,6 +2,7 @@
 #include <array>
 
 #include "drivers/frontend/front_end.hpp"
+#include "drivers/frontend/mcp3208.hpp"
 
 namespace compueye::frontend {
 
@@ -12,7 +13,9 @@ std::string_view name(ChipFault fault) noexcept {
 }
 
 std::span<const FrontEndRow* const> front_ends() noexcept {
-  static constexpr std::array<const FrontEndRow*, 0> rows{};
+  static constexpr std::array rows{
+      &mcp3208,
+  };
   return rows;
 }
 
