@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "drivers/frontend/ads8688.hpp"
 #include "drivers/frontend/front_end.hpp"
 #include "drivers/frontend/mcp3208.hpp"
 
@@ -15,6 +16,7 @@ std::string_view name(ChipFault fault) noexcept {
 std::span<const FrontEndRow* const> front_ends() noexcept {
   static constexpr std::array rows{
       &mcp3208,
+      &ads8688,
   };
   return rows;
 }
