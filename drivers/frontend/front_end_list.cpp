@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "drivers/frontend/ads131m08.hpp"
 #include "drivers/frontend/ads8688.hpp"
 #include "drivers/frontend/front_end.hpp"
 #include "drivers/frontend/mcp3208.hpp"
@@ -17,6 +18,7 @@ std::span<const FrontEndRow* const> front_ends() noexcept {
   static constexpr std::array rows{
       &mcp3208,
       &ads8688,
+      &ads131m08,
   };
   return rows;
 }
