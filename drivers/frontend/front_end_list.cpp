@@ -3,6 +3,7 @@
 
 #include "drivers/frontend/ads131m08.hpp"
 #include "drivers/frontend/ads8688.hpp"
+#include "drivers/frontend/ddc264.hpp"
 #include "drivers/frontend/front_end.hpp"
 #include "drivers/frontend/mcp3208.hpp"
 
@@ -19,6 +20,7 @@ std::span<const FrontEndRow* const> front_ends() noexcept {
       &mcp3208,
       &ads8688,
       &ads131m08,
+      &ddc264,
   };
   return rows;
 }
