@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "drivers/frontend/addressed_front_end.hpp"
 #include "drivers/frontend/chip_checks.hpp"

@@ -1,6 +1,7 @@
 #include "drivers/frontend/ads8688.hpp"
 
 #include <array>
+#include <vector>
 
 #include "drivers/frontend/addressed_front_end.hpp"
 #include "drivers/frontend/chip_checks.hpp"
@@ -95,7 +96,7 @@ class Ads8688 final : public AddressedFrontEnd {
 
   /// Written or read, the third byte that comes back is the register's, figures of section 8.5.2.1.
   hal::Result<void> access(hal::SpiBus& bus, int chip, const ProgramRegister& r, bool write) const {
-    const std::array out{static_cast<std::byte>(r.address << 1U | (write ? 1U : 0U)),
+    const std::array out{static_cast<std::byte>(static_cast<unsigned>(r.address) << 1U | (write ? 1U : 0U)),
                          static_cast<std::byte>(write ? r.value : 0), std::byte{0}};
     std::array<std::byte, 3> in{};
     const hal::SpiSegment segment{.out = out, .in = in};

@@ -1,5 +1,7 @@
 #include "drivers/frontend/mcp3208.hpp"
 
+#include <vector>
+
 #include "drivers/frontend/addressed_front_end.hpp"
 #include "drivers/frontend/chip_checks.hpp"
 #include "hal/try.hpp"

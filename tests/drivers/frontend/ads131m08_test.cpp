@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <string>
+#include <vector>
+
 #include "drivers/frontend/chip_emulator.hpp"
 #include "tests/drivers/frontend/chip_bench.hpp"
 #include "tests/hal/error_check.hpp"

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <string>
+
 #include "tests/drivers/frontend/chip_bench.hpp"
 #include "tests/hal/error_check.hpp"
 

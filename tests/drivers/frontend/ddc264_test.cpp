@@ -2,6 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <optional>
+
 #include "tests/drivers/frontend/chip_bench.hpp"
 #include "tests/hal/error_check.hpp"
 

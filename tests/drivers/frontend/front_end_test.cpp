@@ -2,8 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <limits>
 #include <set>
+#include <string>
+#include <string_view>
 
 #include "tests/drivers/frontend/chip_bench.hpp"
 #include "tests/hal/error_check.hpp"
@@ -72,8 +75,11 @@ TEST_CASE("decoding does not use the heap, whatever came") {
     for (const BitFaults& fault : faults) {
       bench.read(fault);
       const auto before = compueye::tests::heap_use_of_this_thread();
-      bench.front_end->decode(bench.codes, bench.valid);
+      const FrameReport report = bench.front_end->decode(bench.codes, bench.valid);
       CHECK((compueye::tests::heap_use_of_this_thread() - before).calls() == 0);
+      int chips = 0;
+      for (const auto count : report.chips) chips += count;
+      CHECK(chips == 2);
     }
   }
 }
