@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <array>
 
+#include "drivers/frontend/ads131m08.hpp"
+#include "drivers/frontend/ads8688.hpp"
+#include "drivers/frontend/ddc264.hpp"
 #include "drivers/frontend/front_end.hpp"
+#include "drivers/frontend/mcp3208.hpp"
 
 namespace compueye::frontend {
 
@@ -12,7 +16,12 @@ std::string_view name(ChipFault fault) noexcept {
 }
 
 std::span<const FrontEndRow* const> front_ends() noexcept {
-  static constexpr std::array<const FrontEndRow*, 0> rows{};
+  static constexpr std::array rows{
+      &mcp3208,
+      &ads8688,
+      &ads131m08,
+      &ddc264,
+  };
   return rows;
 }
 
