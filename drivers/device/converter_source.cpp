@@ -64,7 +64,13 @@ void ConverterSource::saw_edge(const hal::Edge& edge, DropReason untaken) noexce
   drop(late, untaken);
   drop(seen.unsaid, DropReason::transport_gap);
   account_.estimated += seen.estimated;
-  frame_edge_ = edge;
+  frame_edge_.reset();
+  if (!seen.unclear) {
+    frame_edge_ = edge;
+    return;
+  }
+  ++failures_[ConverterFailure::unclear_edge];
+  drop(1, DropReason::transport_gap);
 }
 
 /// The newest conversion: what the chips hold is its.
@@ -84,7 +90,8 @@ std::optional<ConverterSource::Due> ConverterSource::wait_for_edge(std::int64_t 
     if (frame_edge_) break;
     if (clock_.now_ns() >= silent_ns) {
       ++failures_[ConverterFailure::silence];
-      lose_stream({hal::ErrorCode::timeout, wires_.ready->name(), "does not say that data are ready"});
+      lose_stream(
+          {hal::ErrorCode::timeout, wires_.ready->name(), "does not say that data are ready, or says it without end"});
     }
     return std::nullopt;
   }

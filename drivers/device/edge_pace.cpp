@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace compueye::device {
 namespace {
@@ -10,6 +11,7 @@ constexpr double grid_gain = 1.0 / 8, period_gain = 1.0 / 64;
 constexpr double most_off = 0.01;  // of the stated period
 // Two crystals of 250 ppm each are a half period apart behind so many.
 constexpr std::uint64_t told_by_time = 1000;
+constexpr std::uint64_t most_spurious = 2;  // between two frames
 
 }  // namespace
 
@@ -17,6 +19,7 @@ void EdgePace::begin(std::int64_t period_ns) noexcept {
   stated_ns_ = period_ns_ = static_cast<double>(std::max<std::int64_t>(period_ns, 1));
   begun_ = false;
   number_.reset();
+  spurious_ = 0;
 }
 
 EdgePace::Seen EdgePace::saw(const hal::Edge& edge) noexcept {
@@ -35,6 +38,7 @@ EdgePace::Seen EdgePace::saw(const hal::Edge& edge) noexcept {
   const double ratio = (t_ns - grid_ns_) / period_ns_;
   if (ratio < 0.5) {
     seen.spurious = 1 + untaken;
+    spurious_ += seen.spurious;
     return seen;
   }
   seen.frame = true;
@@ -47,6 +51,11 @@ EdgePace::Seen EdgePace::saw(const hal::Edge& edge) noexcept {
   seen.unsaid = before - seen.late;
   seen.spurious = untaken - seen.late;
   if (passed > told_by_time && passed != by_number) seen.estimated = before;
+  seen.unclear = std::exchange(spurious_, 0) + seen.spurious > most_spurious;
+  if (seen.unclear) {
+    grid_ns_ += static_cast<double>(passed) * period_ns_;
+    return seen;
+  }
   const double off_ns = t_ns - (grid_ns_ + static_cast<double>(passed) * period_ns_);
   grid_ns_ = t_ns - off_ns * (1.0 - grid_gain);
   period_ns_ = std::clamp(period_ns_ + off_ns / static_cast<double>(passed) * period_gain,

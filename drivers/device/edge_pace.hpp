@@ -20,6 +20,7 @@ class EdgePace {
   /// What an edge has told.
   struct Seen {
     bool frame = false;           ///< it is of a frame; otherwise of nothing
+    bool unclear = false;         ///< of a frame that may have been complete at another time
     std::uint64_t late = 0;       ///< frames before it whose edges the kernel has seen and nobody has taken
     std::uint64_t unsaid = 0;     ///< frames before it that had no edge
     std::uint64_t spurious = 0;   ///< edges of no frame, this one included
@@ -39,6 +40,7 @@ class EdgePace {
   double grid_ns_ = 0.0;  // when the last frame was complete
   bool begun_ = false;
   std::optional<std::uint64_t> number_;
+  std::uint64_t spurious_ = 0;  // since the last frame
 };
 
 }  // namespace compueye::device

@@ -172,33 +172,51 @@ bool EmulatedFrontEnd::clock_chips(bool in) noexcept {
   return level;
 }
 
-void EmulatedFrontEnd::move(const hal::SpiSegment& segment, std::size_t& bit, std::size_t bits) {
-  const auto at = [&](FrontEndFaultKind kind) {
-    const FrontEndFault* const fault = lasting(kind);
-    return fault != nullptr && static_cast<std::size_t>(fault->value) % bits == bit;
-  };
+void EmulatedFrontEnd::move(const hal::SpiSegment& segment, std::size_t& bit, const Disturbance& wrong) {
   for (std::size_t k = 0; k < segment.bytes() * bits_of_byte; ++k, ++bit) {
-    if (const FrontEndFault* brown = lasting(FrontEndFaultKind::brown_out);
-        brown != nullptr && bit % bits_of_byte == 0 &&
-        static_cast<std::size_t>(brown->value >> 8) == bit / bits_of_byte) {
-      chips_[static_cast<std::size_t>(brown->value & 0xff) % chips_.size()]->power_on();
-      static_cast<void>(count_down(FrontEndFaultKind::brown_out));
-    }
-    if (at(FrontEndFaultKind::select_glitch)) {
+    if (bit == wrong.brown_out_bit) chips_[wrong.brown_out_chip % chips_.size()]->power_on();
+    if (bit == wrong.glitch_bit) {
       for (auto& chip : chips_) {
         chip->release();
         chip->select();
       }
     }
     const bool out = !segment.out.empty() && bit_of(segment.out, k);
-    bool in = true;
-    if (!at(FrontEndFaultKind::clock_lost)) in = clock_chips(out);
-    if (at(FrontEndFaultKind::clock_doubled)) in = clock_chips(out);
-    if (at(FrontEndFaultKind::bit_error)) in = !in;
-    if (lasting(FrontEndFaultKind::miso_low) != nullptr) in = false;
-    if (lasting(FrontEndFaultKind::miso_high) != nullptr) in = true;
-    set_bit(segment.in, k, in);
+    bool in = bit == wrong.lost_bit || clock_chips(out);
+    if (bit == wrong.doubled_bit) in = clock_chips(out);
+    if (bit == wrong.turned_bit) in = !in;
+    set_bit(segment.in, k, (in && !wrong.low) || wrong.high);
   }
+}
+
+/// What is wrong in this exchange of so many bits; what is wrong once is then over.
+EmulatedFrontEnd::Disturbance EmulatedFrontEnd::disturbance(std::size_t bits) {
+  Disturbance wrong;
+  const auto at = [&](FrontEndFaultKind kind) {
+    const FrontEndFault* const fault = of_this_exchange(kind);
+    if (fault == nullptr) return Disturbance::nowhere;
+    const auto bit = static_cast<std::size_t>(fault->value) % std::max<std::size_t>(bits, 1);
+    static_cast<void>(count_down(kind));
+    return bit;
+  };
+  wrong.glitch_bit = at(FrontEndFaultKind::select_glitch);
+  wrong.lost_bit = at(FrontEndFaultKind::clock_lost);
+  wrong.doubled_bit = at(FrontEndFaultKind::clock_doubled);
+  wrong.turned_bit = at(FrontEndFaultKind::bit_error);
+  if (const FrontEndFault* brown = of_this_exchange(FrontEndFaultKind::brown_out)) {
+    wrong.brown_out_chip = static_cast<std::size_t>(brown->value & 0xff);
+    wrong.brown_out_bit = static_cast<std::size_t>(brown->value >> 8) * bits_of_byte;
+    if (wrong.brown_out_bit < bits) static_cast<void>(count_down(FrontEndFaultKind::brown_out));
+  }
+  wrong.low = lasting(FrontEndFaultKind::miso_low) != nullptr;
+  wrong.high = lasting(FrontEndFaultKind::miso_high) != nullptr;
+  return wrong;
+}
+
+const FrontEndFault* EmulatedFrontEnd::of_this_exchange(FrontEndFaultKind kind) const noexcept {
+  const FrontEndFault* const fault = lasting(kind);
+  const bool here = fault != nullptr && (fault->chip < 0 || static_cast<std::uint32_t>(fault->chip) == selected_);
+  return here ? fault : nullptr;
 }
 
 EmulatedFrontEnd::Outcome EmulatedFrontEnd::exchange(std::span<const hal::SpiSegment> segments, std::int64_t now_ns) {
@@ -211,6 +229,7 @@ EmulatedFrontEnd::Outcome EmulatedFrontEnd::exchange(std::span<const hal::SpiSeg
   }
   std::size_t bits = 0, bit = 0;
   for (const hal::SpiSegment& each : segments) bits += each.bytes() * bits_of_byte;
+  const Disturbance wrong = disturbance(bits);
   bool selected = false;
   const auto chip_select = [&](bool down) {
     if (down == selected) return;
@@ -223,15 +242,11 @@ EmulatedFrontEnd::Outcome EmulatedFrontEnd::exchange(std::span<const hal::SpiSeg
   };
   for (const hal::SpiSegment& each : segments) {
     chip_select(true);
-    move(each, bit, std::max<std::size_t>(bits, 1));
+    move(each, bit, wrong);
     if (each.release) chip_select(false);
   }
   chip_select(false);
-  for (const FrontEndFaultKind kind :
-       {FrontEndFaultKind::select_glitch, FrontEndFaultKind::clock_lost, FrontEndFaultKind::clock_doubled,
-        FrontEndFaultKind::bit_error, FrontEndFaultKind::slow_bus}) {
-    static_cast<void>(count_down(kind));
-  }
+  static_cast<void>(count_down(FrontEndFaultKind::slow_bus));
   return count_down(FrontEndFaultKind::answer_lost) ? Outcome::failed : Outcome::done;
 }
 

@@ -58,6 +58,14 @@ class EmulatedFrontEnd {
   [[nodiscard]] const EmulatedFrontEndSettings& settings() const noexcept { return settings_; }
 
  private:
+  /// What is wrong in an exchange, at which bit of it.
+  struct Disturbance {
+    static constexpr auto nowhere = static_cast<std::size_t>(-1);
+    std::size_t glitch_bit = nowhere, lost_bit = nowhere, doubled_bit = nowhere, turned_bit = nowhere;
+    std::size_t brown_out_bit = nowhere, brown_out_chip = 0;
+    bool low = false, high = false;
+  };
+
   void advance(std::int64_t now_ns);
   void begin(const FrontEndFault& fault);
   void convert(std::uint64_t index);
@@ -65,7 +73,9 @@ class EmulatedFrontEnd {
   void power_on(std::int64_t now_ns);
   [[nodiscard]] double period_ns() const noexcept;
   [[nodiscard]] bool clock_chips(bool in) noexcept;
-  void move(const hal::SpiSegment& segment, std::size_t& bit, std::size_t bits);
+  void move(const hal::SpiSegment& segment, std::size_t& bit, const Disturbance& wrong);
+  [[nodiscard]] Disturbance disturbance(std::size_t bits);
+  [[nodiscard]] const FrontEndFault* of_this_exchange(FrontEndFaultKind kind) const noexcept;
   [[nodiscard]] bool count_down(FrontEndFaultKind kind) noexcept;
   [[nodiscard]] const FrontEndFault* lasting(FrontEndFaultKind kind) const noexcept;
 

@@ -38,6 +38,7 @@ struct FrontEndFault {
   std::int64_t duration_ns = 0;
   std::uint64_t count = 1;
   std::int64_t value = 0;
+  int chip = -1;  ///< of faults in an exchange: of this one of the chips beside one another; -1: of whichever is next
 };
 
 }  // namespace compueye::frontend

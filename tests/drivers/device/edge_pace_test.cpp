@@ -21,7 +21,7 @@ struct Converter {
   double ppm = 0.0;
   bool counted = true;
   std::uint64_t conversion = 0, edges = 0;
-  std::uint64_t frames = 0, late = 0, unsaid = 0, spurious = 0, estimated = 0;
+  std::uint64_t frames = 0, late = 0, unsaid = 0, spurious = 0, estimated = 0, unclear = 0;
 
   Converter() { pace.begin(period_ns); }
   [[nodiscard]] std::int64_t at(double conversions) const {
@@ -30,6 +30,7 @@ struct Converter {
   bool see(std::int64_t t_ns) {
     const EdgePace::Seen seen = pace.saw({t_ns, counted ? std::optional(++edges) : std::nullopt});
     frames += seen.frame ? 1 : 0;
+    unclear += seen.unclear ? 1 : 0;
     late += seen.late;
     unsaid += seen.unsaid;
     spurious += seen.spurious;
@@ -124,6 +125,9 @@ TEST_CASE("an edge that rings is no frame, and neither is a storm of them") {
   chip.next();
   CHECK(chip.made() == chip.conversion);
   CHECK(chip.frames == 52);
+  CHECK(chip.unclear == 1);
+  REQUIRE(chip.next());
+  CHECK(chip.unclear == 1);
   CHECK(chip.spurious == 100 + 15 + 2000 - 19);
 }
 

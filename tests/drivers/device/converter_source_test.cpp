@@ -1,0 +1,296 @@
+// device::ConverterSource on emulated chips: the contract of sample sources, and every fault of their wires.
+
+#include "drivers/device/converter_source.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <random>
+#include <set>
+#include <string>
+
+#include "tests/drivers/device/converter_rig.hpp"
+#include "tests/hal/error_check.hpp"
+#include "tests/hal/sample_source_contract.hpp"
+#include "tests/memory/allocation_counter.hpp"
+
+namespace compueye::device::tests {
+namespace {
+
+using frontend::FrontEndFault;
+using frontend::FrontEndFaultKind;
+using test::ms;
+
+constexpr std::int64_t longest_ns = 150 * ms;  // of faults
+#if defined(COMPUEYE_SANITIZED)
+constexpr unsigned seeds = 4;
+#else
+constexpr unsigned seeds = 16;
+#endif
+
+hal::tests::SourceUnderTest converters_under_test(const ConverterEye& eye) {
+  // The contract has one source at a time, and its chips have to outlive it.
+  auto chips = std::make_shared<std::unique_ptr<frontend::EmulatedFrontEnd>>();
+  hal::tests::SourceUnderTest test;
+  test.make = [=](hal::Clock& clock) -> std::unique_ptr<hal::SampleSource> {
+    *chips = std::make_unique<frontend::EmulatedFrontEnd>(emulated(eye), clock.now_ns());
+    ConverterSettings settings = source_of(**chips);
+    settings.recovery_limit_ns = 0;  // the contract wants to be told at once
+    return std::move(ConverterSource::create(settings, wires_of(**chips, clock), clock).value());
+  };
+  test.heap_calls = [] { return compueye::tests::heap_use_of_this_thread().calls(); };
+  if ((*frontend::find_front_end(eye.chip)).data_ready) {
+    test.lose_frames = [=](hal::SampleSource&, int frames) {
+      (*chips)->inject({.kind = FrontEndFaultKind::edges_unqueued, .count = static_cast<std::uint64_t>(frames)});
+    };
+  }
+  if (eye.tells_bits) {
+    test.lose_channel = [=](hal::SampleSource&, int channel) {
+      (*chips)->inject({.kind = FrontEndFaultKind::bit_error, .value = 100, .chip = channel / 8});
+    };
+  }
+  test.disconnect = [=](hal::SampleSource&) { (*chips)->inject({.kind = FrontEndFaultKind::gone}); };
+  return test;
+}
+
+/// One of a kind, as a seed has it.
+FrontEndFault drawn(FrontEndFaultKind kind, std::int64_t period_ns, std::mt19937& random) {
+  const auto pick = [&](std::int64_t from, std::int64_t to) {
+    return std::uniform_int_distribution<std::int64_t>(from, to)(random);
+  };
+  FrontEndFault fault{.kind = kind, .at_ns = pick(0, 3 * period_ns), .count = static_cast<std::uint64_t>(pick(1, 5))};
+  switch (kind) {
+    case FrontEndFaultKind::edges_stuck:
+    case FrontEndFaultKind::miso_low:
+    case FrontEndFaultKind::miso_high:
+      fault.duration_ns = pick(period_ns, longest_ns);
+      break;
+    case FrontEndFaultKind::edges_doubled:
+      fault.value = pick(100, period_ns / 3);
+      break;
+    case FrontEndFaultKind::edge_storm:
+      fault.value = pick(2'000, period_ns / 4);
+      fault.duration_ns = pick(period_ns, 30 * period_ns);
+      break;
+    case FrontEndFaultKind::slow_bus:
+      fault.value = pick(1'000, 3 * period_ns);
+      break;
+    case FrontEndFaultKind::clock_drift:
+      fault.value = pick(-2000, 2000);
+      break;
+    case FrontEndFaultKind::brown_out:
+      fault.value = pick(0, 7) + (pick(0, 29) << 8);
+      break;
+    case FrontEndFaultKind::gone:
+      fault.duration_ns = pick(1 * ms, longest_ns);
+      break;
+    default:
+      fault.value = pick(0, 1000);
+  }
+  return fault;
+}
+
+/// Whether whatever such a fault makes of a frame is told.
+bool told_by(const ConverterEye& eye, FrontEndFaultKind kind) {
+  switch (kind) {
+    case FrontEndFaultKind::bit_error:
+      return eye.tells_bits;
+    case FrontEndFaultKind::clock_lost:
+    case FrontEndFaultKind::clock_doubled:
+    case FrontEndFaultKind::select_glitch:
+    case FrontEndFaultKind::brown_out:
+    case FrontEndFaultKind::miso_low:
+    case FrontEndFaultKind::miso_high:
+      return eye.tells_clocks;
+    default:
+      return true;
+  }
+}
+
+/// Streams through faults, from a rig that is started, until frames come whole for ten in a row; every block is right.
+void check_streams_through(ConverterRig& rig, bool codes_are_right) {
+  std::optional<std::uint64_t> number;
+  int whole_in_a_row = 0;
+  const std::int64_t until_ns = rig.clock.now_ns() + 5 * test::second;
+  const std::int64_t faults_over_ns = rig.clock.now_ns() + longest_ns + 5 * rig.period_ns();
+  while (rig.clock.now_ns() < until_ns && (whole_in_a_row < 10 || rig.clock.now_ns() < faults_over_ns)) {
+    const auto block = rig.next(50 * ms);
+    CHECK(rig.source->account().balanced());
+    if (!block) {
+      REQUIRE(rig.last_error.code == hal::ErrorCode::timeout);
+      whole_in_a_row = 0;
+      continue;
+    }
+    if (number) REQUIRE(block->frame > *number);
+    number = block->frame;
+    const bool all = std::all_of(block->valid.begin(), block->valid.end(), [](auto valid) { return valid != 0; });
+    whole_in_a_row = all ? whole_in_a_row + 1 : 0;
+    if (codes_are_right) REQUIRE(rig.conversion_of(*block));
+  }
+  CHECK(whole_in_a_row >= 10);
+  CHECK_FALSE(rig.source->recovering());
+}
+
+}  // namespace
+
+TEST_CASE("converters on SPI keep the contract of sample sources") {
+  for (const ConverterEye& eye : converter_eyes) {
+    CAPTURE(eye.chip);
+    hal::tests::check_sample_source_contract(converters_under_test(eye));
+  }
+}
+
+TEST_CASE("converters deliver what they converted, in order and on time") {
+  for (const ConverterEye& eye : converter_eyes) {
+    CAPTURE(eye.chip);
+    ConverterRig rig(eye);
+    REQUIRE(rig.source->start());
+    std::optional<std::uint64_t> first;
+    for (std::uint64_t k = 0; k < 300; ++k) {
+      const auto block = rig.next();
+      REQUIRE(block);
+      REQUIRE(block->frame == k);
+      const auto conversion = rig.conversion_of(*block);
+      REQUIRE(conversion);
+      if (!first) first = *conversion;
+      REQUIRE(*conversion - *first == k);
+    }
+    CHECK(rig.source->account().total_dropped() == 0);
+    CHECK(rig.source->faults() == 0);
+  }
+}
+
+TEST_CASE("every fault of the wires is got over, and no wrong code comes of one that a chip can tell") {
+  for (const ConverterEye& eye : converter_eyes) {
+    for (std::size_t kind = 0; kind < frontend::front_end_fault_kind_count; ++kind) {
+      const auto fault = static_cast<FrontEndFaultKind>(kind);
+      if (fault == FrontEndFaultKind::other_chip) continue;  // which nobody gets over
+      for (unsigned seed = 0; seed < seeds; ++seed) {
+        CAPTURE(eye.chip);
+        CAPTURE(std::string(frontend::name(fault)));
+        CAPTURE(seed);
+        ConverterRig rig(eye);
+        REQUIRE(rig.source->start());
+        for (int k = 0; k < 5; ++k) REQUIRE(rig.next());
+        std::mt19937 random(seed);
+        rig.inject(drawn(fault, rig.period_ns(), random));
+        check_streams_through(rig, told_by(eye, fault));
+      }
+    }
+  }
+}
+
+TEST_CASE("two and three faults at a time are got over") {
+  for (const ConverterEye& eye : converter_eyes) {
+    for (unsigned seed = 0; seed < 3 * seeds; ++seed) {
+      CAPTURE(eye.chip);
+      CAPTURE(seed);
+      ConverterRig rig(eye);
+      REQUIRE(rig.source->start());
+      for (int k = 0; k < 5; ++k) REQUIRE(rig.next());
+      std::mt19937 random(seed);
+      for (unsigned k = 0; k < 2 + seed % 2; ++k) {
+        auto kind = FrontEndFaultKind::other_chip;
+        while (kind == FrontEndFaultKind::other_chip) {
+          kind = static_cast<FrontEndFaultKind>(random() % frontend::front_end_fault_kind_count);
+        }
+        rig.inject(drawn(kind, rig.period_ns(), random));
+      }
+      check_streams_through(rig, eye.tells_bits);
+    }
+  }
+}
+
+TEST_CASE("edges lost on the wire and in the kernel are counted apart, and exactly") {
+  for (const ConverterEye& eye : converter_eyes) {
+    if (!frontend::find_front_end(eye.chip)->data_ready) continue;
+    CAPTURE(eye.chip);
+    ConverterRig rig(eye);
+    REQUIRE(rig.source->start());
+    REQUIRE(rig.next());
+    rig.inject({.kind = FrontEndFaultKind::edges_missed, .count = 7});
+    const auto after_missed = rig.next();
+    REQUIRE(after_missed);
+    CHECK(after_missed->frame == 8);
+    CHECK_FALSE(after_missed->flags.overrun);
+    rig.inject({.kind = FrontEndFaultKind::edges_unqueued, .count = 9});
+    const auto after_unqueued = rig.next();
+    REQUIRE(after_unqueued);
+    CHECK(after_unqueued->frame == 18);
+    CHECK(after_unqueued->flags.overrun);
+    const hal::FrameAccount account = rig.source->account();
+    CHECK(account.drops(hal::DropReason::transport_gap) == 7);
+    CHECK(account.drops(hal::DropReason::device_overrun) == 9);
+    CHECK(account.estimated == 0);
+    CHECK(rig.source->failures()[ConverterFailure::missed_edge] == 7);
+    CHECK(rig.source->failures()[ConverterFailure::late_host] == 9);
+  }
+}
+
+TEST_CASE("a reader that comes late gets the newest conversion, and what it missed is counted") {
+  for (const ConverterEye& eye : converter_eyes) {
+    CAPTURE(eye.chip);
+    ConverterRig rig(eye);
+    REQUIRE(rig.source->start());
+    const auto before = rig.next();
+    REQUIRE(before);
+    const auto first = rig.conversion_of(*before);
+    REQUIRE(first);
+    rig.clock.advance(10 * rig.period_ns() + rig.period_ns() / 4);
+    const auto after = rig.next();
+    REQUIRE(after);
+    const auto second = rig.conversion_of(*after);
+    REQUIRE(second);
+    CHECK(after->frame == *second - *first);
+    CHECK(after->flags.overrun);
+    CHECK(rig.source->account().drops(hal::DropReason::device_overrun) == after->frame - 1);
+  }
+}
+
+TEST_CASE("files that are gone for good, and a chip of another kind, end in a sentence") {
+  for (const ConverterEye& eye : converter_eyes) {
+    CAPTURE(eye.chip);
+    {
+      ConverterRig rig(eye, 2 * test::second);
+      REQUIRE(rig.source->start());
+      REQUIRE(rig.next());
+      rig.inject({.kind = FrontEndFaultKind::gone});
+      CHECK_FALSE(rig.next());
+      CHECK(rig.source->recovering());
+      for (int k = 0; k < 10 && rig.last_error.code == hal::ErrorCode::timeout; ++k) CHECK_FALSE(rig.next());
+      test::check_error(hal::Result<void>(tl::unexpected(rig.last_error)), hal::ErrorCode::disconnected, "CE-SPI", {});
+      CHECK(rig.source->failures()[ConverterFailure::gave_up] == 1);
+      CHECK(rig.source->failures()[ConverterFailure::absent] > 2);
+    }
+    for (std::size_t other = 0; other < frontend::front_ends().size(); ++other) {
+      if (frontend::front_ends()[other]->name == eye.chip) continue;
+      CAPTURE(std::string(frontend::front_ends()[other]->name));
+      hal::VirtualClock clock;
+      frontend::EmulatedFrontEnd chips(emulated(eye), clock.now_ns());
+      chips.inject({.kind = FrontEndFaultKind::other_chip, .value = static_cast<std::int64_t>(other)});
+      const auto made = ConverterSource::create(source_of(chips), wires_of(chips, clock), clock);
+      REQUIRE_FALSE(made);
+      CHECK(made.error().code == hal::ErrorCode::mismatch);
+    }
+  }
+}
+
+TEST_CASE("converters are refused wires that they cannot do without") {
+  for (const ConverterEye& eye : converter_eyes) {
+    CAPTURE(eye.chip);
+    hal::VirtualClock clock;
+    frontend::EmulatedFrontEnd chips(emulated(eye), clock.now_ns());
+    const frontend::FrontEndRow& chip = *chips.settings().chip;
+    const auto refused = [&](auto&& without) {
+      ConverterWires wires = wires_of(chips, clock);
+      without(wires);
+      const auto made = ConverterSource::create(source_of(chips), std::move(wires), clock);
+      return !made && made.error().code == hal::ErrorCode::usage;
+    };
+    CHECK(refused([](ConverterWires& wires) { wires.data.reset(); }));
+    CHECK(refused([](ConverterWires& wires) { wires.ready.reset(); }) == chip.data_ready);
+    CHECK(refused([](ConverterWires& wires) { wires.settings.reset(); }) == chip.settings_bus);
+    CHECK(refused([](ConverterWires& wires) { wires.select.reset(); }) == !chip.chain);
+  }
+}
+
+}  // namespace compueye::device::tests
