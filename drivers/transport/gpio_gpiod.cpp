@@ -70,6 +70,9 @@ hal::Error error_of(const GpioRefusal& refusal, const std::string& name, const s
     return {ErrorCode::not_found, name,
             chip_path + " has no line " + refusal.line + "; `gpioinfo` lists numbers and names"};
   }
+  if (refusal.error == EBUSY && refusal.line.empty()) {
+    return {ErrorCode::io, name, "one of the lines is asked for twice, or was in use a moment ago"};
+  }
   if (refusal.error == EBUSY) {
     const std::string who = refusal.consumer.empty() ? "the kernel or an unnamed program" : refusal.consumer;
     return {ErrorCode::io, name, "line " + refusal.line + " is in use by '" + who + "'; end it, or wire another line"};
@@ -78,6 +81,13 @@ hal::Error error_of(const GpioRefusal& refusal, const std::string& name, const s
     return {ErrorCode::unsupported, name, "the line has no interrupt, so no edges; wire one that has"};
   }
   return {ErrorCode::io, name, "the kernel refuses the request: " + words(refusal.error)};
+}
+
+/// libgpiod takes an empty name for that of the first line without one.
+hal::Result<void> check_named(std::span<const std::string> lines, const std::string& name) {
+  const bool all = std::none_of(lines.begin(), lines.end(), [](const std::string& line) { return line.empty(); });
+  if (all) return {};
+  return hal::fail(ErrorCode::not_found, name, "a line has neither number nor name; `gpioinfo` lists both");
 }
 
 hal::Error failure_of(int error, const std::string& name, const char* doing) {
@@ -108,6 +118,7 @@ GpioEdgeLine::~GpioEdgeLine() = default;
 
 hal::Result<void> GpioEdgeLine::open() {
   close();
+  TRY(check_named({&settings_.line, 1}, name_));
   const std::string path = path_of(settings_.chip);
   auto lines = request_edges(path, settings_);
   if (!lines) return tl::unexpected(error_of(lines.error(), name_, path));
@@ -168,6 +179,7 @@ hal::Result<void> GpioOutputLines::open() {
     return hal::fail(ErrorCode::out_of_range, name_,
                      std::to_string(settings_.lines.size()) + " lines, expected 1 to 32");
   }
+  TRY(check_named(settings_.lines, name_));
   const std::string path = path_of(settings_.chip);
   auto lines = request_outputs(path, settings_);
   if (!lines) return tl::unexpected(error_of(lines.error(), name_, path));

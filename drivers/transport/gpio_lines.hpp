@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <tl/expected.hpp>
 
 #include "drivers/transport/gpio_gpiod.hpp"
+#include "hal/result.hpp"
 #include "hal/signal_lines.hpp"
 
 namespace compueye::transport {

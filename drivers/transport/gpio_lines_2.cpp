@@ -101,6 +101,10 @@ GpioAnswer request(const std::string& chip_path, std::span<const std::string> na
     const Owned<gpiod_line_info, gpiod_line_info_free> info(
         gpiod_chip_get_line_info(chip.get(), static_cast<unsigned>(offset)));
     if (!info) return tl::unexpected(GpioRefusal{Of::line, errno, name, {}});
+    // The library would make one of two, and the levels of all behind them move up.
+    if (std::find(offsets.begin(), offsets.end(), static_cast<unsigned>(offset)) != offsets.end()) {
+      return tl::unexpected(GpioRefusal{Of::request, EBUSY, {}, {}});
+    }
     offsets.push_back(static_cast<unsigned>(offset));
   }
   const Settings settings(gpiod_line_settings_new());

@@ -195,13 +195,15 @@ void SpidevBus::learn_limit() noexcept {
   std::size_t coarsely = 0;
   for (std::size_t k = 0; k < filled_; ++k) coarsely += rounded(message_[k].len, coarse);
   read_most_bytes();
-  if (bytes_ > description_.most_bytes) return;  // the parameter was changed
-  if (grain_ < coarse && coarsely > description_.most_bytes) {
-    grain_ = coarse;
-  } else {
-    description_.most_bytes = std::max<std::size_t>(bytes_ / 2, 1);  // the controller's own limit
-    grain_ = 1;
+  std::size_t& most_bytes = description_.most_bytes;
+  if (bytes_ <= most_bytes) {  // else the parameter was changed
+    if (grain_ < coarse && coarsely > most_bytes) {
+      grain_ = coarse;
+    } else {
+      most_bytes = std::max<std::size_t>(bytes_ / 2, 1);  // the controller's own limit
+    }
   }
+  if (grain_ > most_bytes) grain_ = 1;
 }
 
 hal::Result<void> SpidevBus::exchange(std::span<const hal::SpiSegment> segments) {
@@ -215,8 +217,6 @@ hal::Result<void> SpidevBus::exchange(std::span<const hal::SpiSegment> segments)
   bool again = false;
   for (Place at; at.segment < segments.size();) {
     const Place next = fill(segments, at);
-    if (filled_ == 0)
-      return hal::fail(ErrorCode::io, path_, "the kernel's spidev moves no whole block; set its bufsiz");
     const int error = move();
     if (error == EMSGSIZE && !again) {
       again = true;
