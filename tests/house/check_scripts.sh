@@ -94,7 +94,7 @@ expect "the second time there is nothing to do" 0 ""
 
 machine "" 1000
 run install-packages build
-expect "through sudo" 0 'installing 1[0-9] package'
+expect "through sudo" 0 'installing [12][0-9] package'
 
 machine "" 1000
 shim sudo <<<'exit 1'
@@ -154,7 +154,7 @@ expect "apt-get that claims success" 1 'still not installed'
 machine "$everything"
 run install-packages --check nonsense
 expect "an unknown group" 2 "no package group 'nonsense'"
-for script in aarch64-root count-instructions install-packages build-preset demo mcu test tidy; do
+for script in aarch64-root count-instructions install-packages build-preset demo libgpiod2 mcu test tidy; do
   run "$script" --help
   expect "$script --help has an example" 0 "^Example: tools/$script"
   run "$script" --nonsense
@@ -202,6 +202,47 @@ run aarch64-root
 expect "an archive without arm64" 1 'does not get these packages for arm64'
 run aarch64-root umockdev
 expect "aarch64-root takes no packages" 2 "unknown argument 'umockdev'"
+
+# libgpiod 2 beside the installed one, from the archive that has the machine's own suite.
+archive() {
+  machine "$everything"
+  rm -rf "$project/build/libgpiod2"
+  printf 'Types: deb\nSuites: other\n\n# a word\n\nTypes: deb\nSuites: bookworm\nSigned-By: /keys/second.gpg\n' >"$state/two.sources"
+  {
+    printf 'suites=%q\n' "$1"
+    cat <<END
+echo "\$*" >>"$state/apt-calls"
+[[ \$* != *indextargets* ]] || printf '%b' "\$suites"
+for word; do [[ \$word != Dir::Etc::SourceList=* ]] || cat "\${word#*=}" >>"$state/sources"; done
+[[ \$* != *download* ]] || touch libgpiod-dev_2_amd64.deb
+END
+  } | shim apt-get
+  shim dpkg-deb <<'END'
+mkdir -p "$3/usr/include" && touch "$3/usr/include/gpiod.h"
+END
+}
+archive "other scheme:/one/ $state/two.sources:1\nbookworm scheme:/two/ $state/two.sources:2\n"
+run libgpiod2
+expect "a folder for libgpiod 2" 0 'build/libgpiod2/root: libgpiod-dev_2'
+output=$(sort -u "$state/sources")
+expect "... from the archive of the machine's suite, with its keys" 0 '^deb \[signed-by=/keys/second.gpg\] scheme:/two/ bookworm-backports main$'
+calls 'Dir::State=.*Dir::Etc::SourceParts=/dev/null.* download libgpiod3 libgpiod-dev$'
+expect "... with records of its own" 0 '^1$'
+run libgpiod2
+expect "the second time there is nothing to fetch" 0 ""
+archive "other scheme:/one/ $state/two.sources:1\n"
+run libgpiod2
+expect "no archive of this suite" 1 'no archive in /etc/apt has the suite bookworm'
+archive "bookworm scheme:/two/ $state/two.sources:2\n"
+sed -i 's/^echo/[[ $* != *update* ]] || { echo "E: no Release file"; exit 100; }; echo/' "$shims/apt-get"
+run libgpiod2
+expect "an archive without backports" 1 'has libgpiod3 libgpiod-dev in bookworm-backports .*E: no Release file'
+run libgpiod2
+expect "... leaves no folder that would pass for whole" 1 'bookworm-backports'
+archive "bookworm scheme:/two/ $state/two.sources:2\n"
+sed -i 's/^echo/[[ $* != *update* ]] || { echo "Err:1 Temporary failure resolving"; exit 100; }; echo/' "$shims/apt-get"
+run libgpiod2
+expect "no network for libgpiod 2" 1 'cannot reach the package archive'
 run test --preset fast
 expect "test refuses an unknown preset" 2 "unknown preset 'fast'"
 run test --filter

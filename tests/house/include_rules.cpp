@@ -110,7 +110,7 @@ constexpr std::array<Library, 17> known_libraries{{
     {"hidapi", "hidapi/ hidapi.h", "PkgConfig::HIDAPI"},
     {"SDL2", "SDL.h SDL2/", "PkgConfig::SDL2"},
     {"umockdev", "umockdev.h", "PkgConfig::UMOCKDEV"},
-    {"libgpiod", "gpiod.h gpiod.hpp gpiodcxx/", "PkgConfig::GPIOD"},
+    {"libgpiod", "gpiod.h gpiod.hpp gpiodcxx/", "PkgConfig::GPIOD gpiod2"},
 }};
 
 // C++20 and, after the break, the C headers it carries.

@@ -6,6 +6,9 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -48,6 +51,22 @@ void Testbed::add(const std::string& devices) {
   const bool added = umockdev_testbed_add_from_string(testbed_, devices.c_str(), &error);
   INFO((error == nullptr ? "" : error->message));
   REQUIRE(added);
+}
+
+void Testbed::add(const DeviceFile& file, UMockdevIoctlBase* handler) {
+  GError* error = nullptr;
+  REQUIRE(umockdev_testbed_attach_ioctl(testbed_, file.path().c_str(), handler, &error));
+  const std::string major = std::to_string(file.major), minor = std::to_string(file.minor);
+  add("P: " + file.sys_path().substr(4) + "\nN: " + file.name + "\nE: SUBSYSTEM=" + file.subsystem + "\nE: DEVNAME=" +
+      file.path() + "\nE: MAJOR=" + major + "\nE: MINOR=" + minor + "\nA: dev=" + major + ":" + minor + "\\n\n");
+}
+
+void Testbed::write_file(const std::string& path, const std::string& text) {
+  const std::unique_ptr<gchar, decltype(&g_free)> root(umockdev_testbed_get_root_dir(testbed_), &g_free);
+  const std::filesystem::path file = root.get() + path;
+  std::filesystem::create_directories(file.parent_path());
+  std::ofstream(file) << text;
+  REQUIRE(std::filesystem::exists(file));
 }
 
 void Testbed::remove(const std::string& sys_path) {

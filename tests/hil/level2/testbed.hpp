@@ -16,6 +16,16 @@ typedef struct _UMockdevIoctlClient UMockdevIoctlClient;
 
 namespace compueye::hil {
 
+/// "/dev/spidev1.0" of a subsystem.
+struct DeviceFile {
+  std::string name;       ///< in /dev
+  std::string subsystem;  ///< "spidev"
+  int major = 0, minor = 0;
+
+  [[nodiscard]] std::string path() const { return "/dev/" + name; }
+  [[nodiscard]] std::string sys_path() const { return "/sys/devices/platform/" + name; }
+};
+
 /// umockdev's machine of this process: sysfs, udev and /dev as libusb and hidapi see them. Only under umockdev-wrapper.
 class Testbed {
  public:
@@ -28,6 +38,10 @@ class Testbed {
   void add(const std::string& devices);
   void remove(const std::string& sys_path);
   void announce(const std::string& sys_path, const char* action);
+  /// A file that no device has, with the folders it lies in: "/sys/module/spidev/parameters/bufsiz".
+  void write_file(const std::string& path, const std::string& text);
+  /// A device file whose ioctls `handler` answers, and its folder in sysfs. For a file that no earlier device had.
+  void add(const DeviceFile& file, UMockdevIoctlBase* handler);
   /// For a device file that no earlier device had: umockdev refuses a second handler for one.
   [[nodiscard]] int new_number() noexcept { return ++last_number_; }
   [[nodiscard]] UMockdevTestbed* get() const noexcept { return testbed_; }
