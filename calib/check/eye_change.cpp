@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "calib/median.hpp"
 
@@ -65,6 +67,7 @@ class Fit {
   void solve() {
     constexpr int rounds = 3;
     for (int round = 0; round < rounds; ++round) solve_once();
+    measure_noise();
   }
 
   /// By how much of its light a channel alone has changed, beside what all did.
@@ -78,7 +81,7 @@ class Fit {
     Tested tested;
     if (!(square > 0.0)) return {0.0, 1.0, 1.0};
     tested.value = product / square;
-    tested.sigma = 1.0 / std::sqrt(square);
+    tested.sigma = noise_ratio_ / std::sqrt(square);
     tested.chance = chance_of_normal(tested.value / tested.sigma);
     return tested;
   }
@@ -89,10 +92,12 @@ class Fit {
 
   void tell(EyeChange& change) const {
     change.gain.value = x_[0];
-    change.gain.sigma = std::sqrt(covariance_(0, 0) + s_.light_spread * s_.light_spread);
+    change.noise_ratio = noise_ratio_;
+    const Eigen::Matrix4d covariance = noise_ratio_ * noise_ratio_ * covariance_;
+    change.gain.sigma = std::sqrt(covariance(0, 0) + s_.light_spread * s_.light_spread);
     change.gain.chance = chance_of_normal(change.gain.value / change.gain.sigma);
     const Eigen::Vector3d turn = x_.segment<axes>(1);
-    const Eigen::Matrix3d of_turn = covariance_.bottomRightCorner<axes, axes>();
+    const Eigen::Matrix3d of_turn = covariance.bottomRightCorner<axes, axes>();
     for (std::size_t a = 0; a < turn_axes; ++a) {
       const auto axis = static_cast<Eigen::Index>(a);
       change.turn_rad[a] = turn[axis];
@@ -141,6 +146,17 @@ class Fit {
     covariance_ = solver.solve(Eigen::MatrixXd::Identity(unknowns, unknowns)).topLeftCorner<shared, shared>();
   }
 
+  /// By the median square, which a few channels that changed do not move. Below the least of it, it may be chance.
+  void measure_noise() {
+    constexpr double of_normal = 0.4549, least = 1.5;  // the median square of a normal number
+    std::vector<double> squares;
+    for (std::size_t at = 0; at < s_.then.size(); ++at) {
+      if (in_[at % width_] != 0 && usable(at)) squares.push_back(left(at) * left(at) / variance(at));
+    }
+    const double ratio = std::sqrt(median(std::move(squares)) / of_normal);
+    noise_ratio_ = ratio > least ? ratio : 1.0;
+  }
+
   [[nodiscard]] bool usable(std::size_t at) const noexcept {
     return std::isfinite(s_.then[at]) && std::isfinite(s_.now[at]) && variance(at) > 0.0 && std::isfinite(variance(at));
   }
@@ -169,7 +185,8 @@ class Fit {
   std::size_t width_;
   std::vector<std::uint8_t> in_;
   std::vector<Eigen::Matrix3d> usual_slopes_;  // mean squares, a picture
-  Eigen::VectorXd x_;                          // gain, turn, the light of each picture
+  double noise_ratio_ = 1.0;
+  Eigen::VectorXd x_;  // gain, turn, the light of each picture
   Eigen::Matrix4d covariance_ = Eigen::Matrix4d::Identity();
 };
 
@@ -250,7 +267,9 @@ Result<EyeChange> eye_change(const CheckSamples& samples) {
   const auto& turn = change.turn_rad;
   change.gain_changed = change.gain.chance < question && std::fabs(change.gain.value) > LeastChange::gain;
   change.turned = change.turn_chance < question && std::hypot(turn[0], turn[1], turn[2]) > LeastChange::turn_rad;
-  change.rest_changed = change.rest_chance < question && change.rest_share > LeastChange::rest;
+  const bool rest = change.rest_chance < question;
+  change.rest_changed = rest && change.rest_share > LeastChange::rest;
+  change.noisier = rest && !change.rest_changed && change.noise_ratio > LeastChange::noise_ratio;
   return change;
 }
 

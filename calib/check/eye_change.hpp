@@ -43,11 +43,14 @@ struct EyeChange {
   double rest_chi2 = 0.0;                     ///< a sample, of what all this leaves of the channels that did not
   double rest_share = 0.0;                    ///< of that, what noise does not explain, rms, relative to the light
   double rest_chance = 1.0;
+  double noise_ratio = 1.0;  ///< how much the middle one of what is left is more than noise was, at least 1
 
+  bool noisier = false;  ///< and it was seen in all, not in some: no one question has the answer
   bool gain_changed = false, turned = false, rest_changed = false, dark_changed = false;
   bool dark_judged = true;  ///< false: there was light that was not the lamp's, which may be all that differs
   [[nodiscard]] bool changed() const noexcept {
-    return gain_changed || turned || rest_changed || dark_changed || !channels.empty() || !dark_channels.empty();
+    return noisier || gain_changed || turned || rest_changed || dark_changed || !channels.empty() ||
+           !dark_channels.empty();
   }
 };
 
@@ -59,6 +62,7 @@ struct LeastChange {
   static constexpr double dark = 1e-3;         ///< of all dark levels, relative to the white of the median channel
   static constexpr double one_dark = 5e-3;     ///< of one
   static constexpr double rest = 2e-3;         ///< of what is left, relative to the light, rms
+  static constexpr double noise_ratio = 2.0;
 };
 
 /// False alarms a check: at most this share, each of its six questions taking a sixth of it.
@@ -68,7 +72,8 @@ inline constexpr double false_alarms = 1e-3;
 /// from noise. One weighted least squares fit of gain, turn and each picture's own light to all channels; a channel
 /// that stands out of it is taken out, the worst first, and the fit repeated, so that neither hides the other. What the
 /// light did by itself in the session counts as noise of the gain: a restless lamp hides a small change, and does not
-/// raise an alarm.
+/// raise an alarm. Where the middle one of what is left is more than the session's noise, that is the noise of now, and
+/// every question is asked with it.
 ///
 /// Errors: mismatch (sizes), out_of_range (a spread that is none), usage (fewer channels than four that give light).
 [[nodiscard]] hal::Result<EyeChange> eye_change(const CheckSamples& samples);

@@ -54,10 +54,10 @@ hal::Result<void> validate(const SessionPlan& p) {
 
 hal::Result<void> check_judged(const SessionPlan& plan) {
   if (plan.patterns >= plan.held_out_every) return {};
-  return hal::fail(
-      hal::ErrorCode::out_of_range, "plan.held_out_every",
-      "is " + std::to_string(plan.held_out_every) + " with " + std::to_string(plan.patterns) +
-          " patterns, so that none is held out to judge the estimate: expected 2 to the number of patterns");
+  return hal::fail(hal::ErrorCode::out_of_range, "plan.held_out_every",
+                   "is " + std::to_string(plan.held_out_every) + " with " + std::to_string(plan.patterns) +
+                       " patterns of the family " + plan.family +
+                       ", so that none is held out to judge the estimate: expected 2 to the number of patterns");
 }
 
 }  // namespace compueye::calib

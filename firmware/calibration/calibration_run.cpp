@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -38,6 +39,29 @@ Result<std::optional<calib::StoredSession>> cut_off(const EyeFile& file) {
   return std::optional(std::move(sessions.back()));
 }
 
+/// "sensor.full_scale was 128 and is 129.28, ...", of lines "key = value".
+std::string differences(std::string_view before, std::string_view now) {
+  std::string text;
+  const auto each_key = [&](std::string_view lines, auto&& use) {
+    while (!lines.empty()) {
+      const std::string_view line = lines.substr(0, lines.find('\n'));
+      lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+      use(line.substr(0, line.find(" = ")));
+    }
+  };
+  const auto tell = [&](std::string_view key) {
+    const auto was = value_in(before, key), is = value_in(now, key);
+    if (was == is) return;
+    text += fmt::format("{}{} was {} and is {}", text.empty() ? "" : ", ", key, was.value_or("left out"),
+                        is.value_or("left out"));
+  };
+  each_key(before, tell);
+  each_key(now, [&](std::string_view key) {
+    if (!value_in(before, key)) tell(key);
+  });
+  return text;
+}
+
 /// The same eye, in the same state, for the same plan. An eye's config_id names its stream, and is another every time.
 Result<void> check_same(const calib::Session& was, const calib::Session& is, const std::string& file) {
   const auto refuse = [&](std::string_view what, std::string_view before, std::string_view now) {
@@ -48,6 +72,11 @@ Result<void> check_same(const calib::Session& was, const calib::Session& is, con
   };
   if (was.serial != is.serial) return refuse("serial", was.serial, is.serial);
   if (was.firmware != is.firmware) return refuse("firmware", was.firmware, is.firmware);
+  if (const std::string changed = differences(was.configuration, is.configuration); !changed.empty()) {
+    return fail(
+        ErrorCode::mismatch, file,
+        fmt::format("holds a session in which {}: put it back, or begin another session by --give-up", changed));
+  }
   if (was.configuration != is.configuration) return refuse("configuration", was.configuration, is.configuration);
   if (was.distance_mm != is.distance_mm) {
     return refuse("distance", fmt::format("{} mm", was.distance_mm), fmt::format("{} mm", is.distance_mm));

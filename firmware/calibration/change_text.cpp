@@ -38,7 +38,14 @@ std::string change_text(const calib::EyeChange& change) {
   if (change.dark_changed || !change.dark_channels.empty()) {
     add("dark levels (keep other light away and the eye as warm as it was, else calibrate again)");
   }
-  if (change.rest_changed) add("something that is none of gain, pose or single ommatidia (calibrate again)");
+  const std::string noise = fmt::format(
+      "noise {:.1f} times what it was (look for a loose wire, a restless lamp or supply)", change.noise_ratio);
+  if (change.rest_changed) {
+    const bool or_noise = change.noise_ratio > calib::LeastChange::noise_ratio;
+    add("something that is none of gain, pose or single ommatidia (calibrate again)" +
+        (or_noise ? ", or " + noise : ""));
+  }
+  if (change.noisier) add(noise);
   return what;
 }
 

@@ -8,7 +8,7 @@
 namespace compueye::firmware {
 namespace {
 
-enum Part { gain, turn, dark, rest, ommatidium, dark_ommatidium };
+enum Part { gain, turn, dark, rest, noise, ommatidium, dark_ommatidium };
 
 std::set<std::pair<int, int>> parts_of(const calib::EyeChange& change) {
   constexpr int all = -1;
@@ -17,6 +17,7 @@ std::set<std::pair<int, int>> parts_of(const calib::EyeChange& change) {
   if (change.turned) parts.insert({turn, all});
   if (change.dark_changed) parts.insert({dark, all});
   if (change.rest_changed) parts.insert({rest, all});
+  if (change.noisier) parts.insert({noise, all});
   for (const calib::ChangedChannel& each : change.channels) parts.insert({ommatidium, each.channel});
   for (const calib::ChangedChannel& each : change.dark_channels) parts.insert({dark_ommatidium, each.channel});
   return parts;
@@ -30,6 +31,7 @@ calib::EyeChange only(calib::EyeChange change, const std::set<std::pair<int, int
   change.turned = has(turn, all);
   change.dark_changed = has(dark, all);
   change.rest_changed = has(rest, all);
+  change.noisier = has(noise, all);
   std::erase_if(change.channels, [&](const auto& each) { return !has(ommatidium, each.channel); });
   std::erase_if(change.dark_channels, [&](const auto& each) { return !has(dark_ommatidium, each.channel); });
   return change;
@@ -61,7 +63,8 @@ std::string CheckDiary::enter(const CheckLook& look) {
   unconfirmed_ += !doubted_.empty() && seen_twice.empty();
   // What comes with something that is told has to be seen again, too, but is in no hurry.
   wants_another_ = !news.empty() && seen_twice.empty();
-  doubted_ = std::move(news);
+  doubted_.clear();
+  std::ranges::set_difference(news, seen_twice, std::inserter(doubted_, doubted_.end()));
   if (!seen_twice.empty()) {
     told_.insert(seen_twice.begin(), seen_twice.end());
     told_text_ = change_text(only(*last_, told_));

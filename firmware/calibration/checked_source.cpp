@@ -41,6 +41,8 @@ Result<void> CheckedSource::do_start() {
   outages_ = delivered_ = 0;
   due_ = withheld_ = checking_ = again_ = false;
   checked_ = 0;
+  booked_ = of_checks_ = {};
+  was_of_check_ = false;
   return source_.start();
 }
 
@@ -52,7 +54,9 @@ Result<hal::SampleBlock> CheckedSource::do_read(std::int64_t deadline_ns) {
     if (!block) return block;
     const std::int64_t now_ns = clock_.now_ns();
     const std::int64_t begun_ns = frame_time_.begun_ns(block->t_ns, block->flags.time_ok, now_ns);
-    if (is_of_scene(*block, begun_ns)) {
+    const bool of_scene = is_of_scene(*block, begun_ns);
+    book(!of_scene);
+    if (of_scene) {
       ++delivered_;
       checking_ = false;
       return block;
@@ -66,6 +70,17 @@ Result<hal::SampleBlock> CheckedSource::do_read(std::int64_t deadline_ns) {
     }
     if (clock_.now_ns() >= deadline_ns) return hal::timed_out();
   }
+}
+
+/// What was lost between two frames of a check is the check's as they are.
+void CheckedSource::book(bool of_check) noexcept {
+  const hal::FrameAccount now = source_.account();
+  if (of_check && was_of_check_) {
+    for (std::size_t k = 0; k < now.dropped.size(); ++k) of_checks_.dropped[k] += now.dropped[k] - booked_.dropped[k];
+    of_checks_.estimated += now.estimated - booked_.estimated;
+  }
+  booked_ = now;
+  was_of_check_ = of_check;
 }
 
 bool CheckedSource::is_of_scene(const hal::SampleBlock& block, std::int64_t begun_ns) noexcept {
@@ -183,7 +198,9 @@ void CheckedSource::do_stop() noexcept {
 
 hal::FrameAccount CheckedSource::do_account() const noexcept {
   hal::FrameAccount account = source_.account();
-  account.checked += account.delivered - delivered_;
+  account.checked += account.delivered - delivered_ + of_checks_.total_dropped();
+  for (std::size_t k = 0; k < account.dropped.size(); ++k) account.dropped[k] -= of_checks_.dropped[k];
+  account.estimated -= of_checks_.estimated;
   account.delivered = delivered_;
   return account;
 }

@@ -74,6 +74,7 @@ class CheckedSource final : public hal::SampleSource {
   [[nodiscard]] std::uint64_t do_faults() const noexcept override { return source_.faults(); }
   [[nodiscard]] std::vector<hal::Counter> do_counters() const override { return source_.counters(); }
 
+  void book(bool of_check) noexcept;
   [[nodiscard]] bool is_of_scene(const hal::SampleBlock& block, std::int64_t begun_ns) noexcept;
   void pass_time(const hal::SampleBlock& block) noexcept;
   void begin();
@@ -93,6 +94,8 @@ class CheckedSource final : public hal::SampleSource {
   std::uint32_t config_id_ = 0;
   std::uint64_t outages_ = 0, delivered_ = 0;
   std::atomic<std::uint64_t> checked_ = 0;
+  hal::FrameAccount booked_, of_checks_;  // the source's when its last frame came, and what of it was lost in checks
+  bool was_of_check_ = false;             // that frame
   std::atomic<bool> checking_ = false;
   std::atomic<bool> again_ = false;
   bool due_ = false, withheld_ = false;

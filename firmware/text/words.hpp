@@ -13,6 +13,9 @@ namespace compueye::firmware {
 /// `text` on one line and harmless to a terminal: control characters become \n, \r, \t or \xHH. UTF-8 passes through.
 [[nodiscard]] std::string visible_text(std::string_view text);
 
+/// With U+FFFD for every byte that is no part of a code point (RFC 3629): names of files are any bytes.
+[[nodiscard]] std::string valid_utf8(std::string_view text);
+
 /// The same, cut after `most` characters (with "..." instead of the rest): for quoting what a file holds.
 [[nodiscard]] std::string excerpt(std::string_view text, std::size_t most = 60);
 

@@ -167,6 +167,23 @@ TEST_CASE("four frames tell a gain, a turn and one ommatidium, each as what it i
   CHECK(singles >= 98);
 }
 
+TEST_CASE("more noise is told as noise, and as no gain, turn or ommatidium") {
+  CheckBench bench;
+  std::mt19937_64 random(23);
+  std::normal_distribution<double> more(0.0, 4.0 * CheckBench::noise);
+  int noisy = 0, wrong = 0;
+  constexpr int draws = 200;
+  for (int k = 0; k < draws; ++k) {
+    std::vector<double> y = bench.samples.then;
+    for (double& value : y) value += more(random);
+    const EyeChange change = bench.judged(y, random);
+    noisy += (change.noisier || change.rest_changed) && change.noise_ratio > 2.0 && change.noise_ratio < 4.0 ? 1 : 0;
+    wrong += change.gain_changed || change.turned || !change.channels.empty() ? 1 : 0;
+  }
+  CHECK(noisy == draws);
+  CHECK(wrong <= 2);
+}
+
 TEST_CASE("a restless light hides a small gain, and is no alarm; dark, masked and missing samples tell nothing") {
   CheckBench bench;
   std::mt19937_64 random(13);

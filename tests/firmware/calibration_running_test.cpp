@@ -150,6 +150,7 @@ TEST_CASE("a gain that changes by 1 % while the eye runs is told once, and once 
   eye.run(8 * second);
   CHECK(eye.diary.looks() >= 4);
   CHECK(eye.diary.changes() == 1);
+  CHECK(eye.diary.unconfirmed() == 0);
   REQUIRE(eye.told.size() == 2);
   CHECK((says(eye.told.front(), "-1.0") || says(eye.told.front(), "-0.9")));
   CHECK(says(eye.told.front(), "of light"));

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -14,6 +16,8 @@
 #include "calib/estimate/estimate.hpp"
 #include "calib/eye_file/eye_file.hpp"
 #include "calib/median.hpp"
+#include "calib/patterns/pattern_family.hpp"
+#include "calib/session/session_plan.hpp"
 #include "firmware/app/command.hpp"
 #include "firmware/app/commands/calibrate_check.hpp"
 #include "firmware/app/commands/calibrate_report.hpp"
@@ -49,9 +53,9 @@ using hal::Result;
 /// The command line of `compueye calibrate`.
 struct CalibrateRequest {
   std::string board;
-  std::string eye;    ///< F.eye
-  std::string plan;   ///< P.toml
-  std::string scene;  ///< what a simulated display is like; empty: plain
+  std::string eye;                  ///< F.eye
+  std::optional<std::string> plan;  ///< P.toml
+  std::string scene;                ///< what a simulated display is like; empty: plain
   LightWanted light;
   std::uint64_t seed = 0;
   bool resume = false;
@@ -132,7 +136,7 @@ Result<std::optional<ErrorBudget>> budget_of(const CalibrateRequest& o, const Bo
 Result<std::int64_t> take(const CalibrateRequest& o, const Board& board, const CalibrationBench& bench,
                           calib::EyeFile& file, Teller& teller) {
   CalibrationRequest request;
-  if (!o.plan.empty()) request.plan = TRY(load_plan(o.plan));
+  if (o.plan) request.plan = TRY(load_plan(*o.plan));
   request.resume = o.resume;
   request.give_up = o.give_up;
   request.distance_mm = board.object.distance_mm;
@@ -222,20 +226,42 @@ Result<void> check_again(const CalibrateRequest& o, Board& board, Session& sessi
   return check_verdict(o.eye, change);
 }
 
+/// Before a file is made.
+Result<void> check_plan(const CalibrateRequest& o, const Board& board) {
+  calib::SessionPlan plan;
+  if (o.plan) {
+    TRY(need(!o.plan->empty(), "--plan", "names no file; give it one, or leave it out"));
+    plan = TRY(load_plan(*o.plan));
+  }
+  TRY(calib::validate(plan));
+  const std::int64_t there = TRY(calib::pattern_family(plan.family))->count(board.object.rows, board.object.cols);
+  plan.patterns = static_cast<int>(std::min<std::int64_t>(plan.patterns, there));
+  return calib::check_judged(plan);
+}
+
+/// One that this run has made, where no picture was ever taken.
+void remove_if_empty(calib::EyeFile file) {
+  const std::string path = file.path();
+  const auto sessions = file.sessions();
+  if (!sessions || !sessions->empty() || !file.close()) return;
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+}
+
 Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   Board board = TRY(load_board(o.board));
   TRY(o.overrides.apply(board));
   TRY(light_kind(o.light, board.source.simulated()));
   TRY(need(o.scene.empty() || board.source.simulated(), "--scene", "is of a simulated display; leave it out"));
   if (o.check) return check_again(o, board, session);
-  if (!o.plan.empty()) {  // before a file is made
-    const calib::SessionPlan plan = TRY(load_plan(o.plan));
-    TRY(calib::validate(plan));
-    TRY(calib::check_judged(plan));
-  }
+  TRY(check_plan(o, board));
   std::optional<calib::EyeFile> file;
   Teller teller(session);
-  const calib::StoredSession done = TRY(taken(o, board, file, session, teller));
+  std::error_code ignored;
+  const bool there = std::filesystem::exists(o.eye, ignored);
+  auto took = taken(o, board, file, session, teller);
+  if (!took && !there && file) remove_if_empty(std::move(*file));
+  const calib::StoredSession done = TRY(std::move(took));
   session.end_progress();
   EstimateRequest wanted;
   wanted.exposure_s = eye_to_simulate(board).integration_s();

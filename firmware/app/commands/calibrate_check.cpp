@@ -54,7 +54,8 @@ Figures check_report(const std::string& file, const EyeCheck& check, const calib
             {"rest", Figures{{"changed", change.rest_changed},
                              {"chi2", change.rest_chi2},
                              {"share", change.rest_share},
-                             {"chance", change.rest_chance}}}};
+                             {"chance", change.rest_chance}}},
+            {"noise", Figures{{"changed", change.noisier}, {"ratio", change.noise_ratio}}}};
   f.tell("{file}: four frames against session {session}\n");
   f.say(fmt::format("gain: {:+.2f} % (one sigma: {:.2f} %): {}\n", 100.0 * change.gain.value, 100.0 * change.gain.sigma,
                     change.gain_changed ? "changed" : "as it was"));
@@ -70,6 +71,10 @@ Figures check_report(const std::string& file, const EyeCheck& check, const calib
                     change.dark_channels.empty() ? "" : "; ommatidia " + list_of(change.dark_channels)));
   f.say(fmt::format("the rest: {:.2f} % of the light beyond noise (chi^2 {:.2f} a sample): {}\n",
                     100.0 * change.rest_share, change.rest_chi2, change.rest_changed ? "changed" : "as it was"));
+  if (change.noise_ratio > 1.0) {
+    f.say(fmt::format("noise: {:.1f} times the session's{}\n", change.noise_ratio,
+                      change.noisier ? ": changed" : ", or a change of every channel"));
+  }
   return f;
 }
 

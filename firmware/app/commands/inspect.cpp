@@ -110,7 +110,8 @@ Result<void> add_figures(const InspectRequest& o, const recon::Progress& progres
 Result<void> write_page(const InspectRequest& o, Session& session, Figures& figures) {
   TRY(need(fs::path(o.what).extension() == ".eye", "--html", "makes a page of an .eye file, not of '" + o.what + "'"));
   std::error_code error;
-  const bool another = fs::path(o.html).extension() != ".eye" && !fs::equivalent(o.what, o.html, error);
+  const bool another = fs::weakly_canonical(o.html, error).extension() != ".eye" &&
+                       fs::path(o.html).extension() != ".eye" && !fs::equivalent(o.what, o.html, error);
   TRY(need(another, "--html", "is '" + o.html + "', an eye file, expected another name for the page"));
   TRY(try_output(o.html));
   const std::string page = TRY(eye_page(TRY(page_data(o.what))));

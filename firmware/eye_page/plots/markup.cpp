@@ -8,7 +8,7 @@ namespace compueye::firmware {
 
 std::string escaped(std::string_view text) {
   std::string out;
-  for (const char c : visible_text(text)) {
+  for (const char c : visible_text(valid_utf8(text))) {
     switch (c) {
       case '&':
         out += "&amp;";

@@ -137,6 +137,14 @@ TEST_CASE("a session of an eye that is not there, and before a light that it can
   const auto few = board.outside("few.toml");
   std::ofstream(few) << "[patterns]\ncount = 4\n";
   CHECK(contains(with({"--plan", few.string()}).err, "plan.held_out_every"));
+  std::ofstream(few) << "[patterns]\nfamily = \"black\"\n";
+  CHECK(contains(with({"--plan", few.string()}).err, "of the family black"));
+  CHECK(contains(with({"--plan", ""}).err, "--plan"));
+  board.change("full_scale = 128", "full_scale = 40");
+  const Ended bright = with({});
+  CHECK(bright.exit_code == 1);
+  CHECK(contains(bright.err, "saturates"));
+  board.change("full_scale = 40", "full_scale = 128");
   CHECK_FALSE(std::filesystem::exists(eye));
   board.change("kind = \"sim\"", "kind = \"usb\"");
   CHECK(with({"--light", "sim"}).exit_code == 2);
