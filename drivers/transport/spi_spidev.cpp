@@ -152,7 +152,7 @@ SpidevBus::Place SpidevBus::fill(std::span<const hal::SpiSegment> segments, Plac
     const std::size_t left = segment.bytes() - at.byte;
     const bool whole = rounded(left, grain_) <= room;
     const std::size_t length = whole ? left : room / grain_ * grain_;
-    if (!whole && (length == 0 || released_filled > 0)) break;
+    if (!whole && length == 0) break;
     spi_ioc_transfer& transfer = message_[filled_];
     transfer = {};
     if (!segment.out.empty()) transfer.tx_buf = reinterpret_cast<std::uintptr_t>(segment.out.data() + at.byte);

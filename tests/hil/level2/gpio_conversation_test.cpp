@@ -3,12 +3,16 @@
 #include <doctest/doctest.h>
 
 #include <linux/gpio.h>
+#include <pthread.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "drivers/transport/gpio_gpiod.hpp"
@@ -106,6 +110,32 @@ TEST_CASE("gpio: edges come in order with the kernel's times, those that waited 
   REQUIRE(bench.ready.open());  // what came before is gone, and counting begins anew
   bench.pulse(0, 1);
   bench.check_edges(0, 1);
+}
+
+TEST_CASE("gpio: a wait that signals interrupt goes on until the edge comes") {
+  HIL_TESTBED(testbed);
+  GpioBench bench(testbed);
+  REQUIRE(bench.ready.open());
+  static std::atomic<int> handled{0};
+  handled = 0;
+  struct sigaction count {};
+  struct sigaction before {};
+  count.sa_handler = [](int) { ++handled; };
+  REQUIRE(sigaction(SIGUSR1, &count, &before) == 0);
+  const pthread_t waiting = pthread_self();
+  std::thread other([&] {
+    for (int sent = 0; sent < 5; ++sent) {
+      pthread_kill(waiting, SIGUSR1);
+      while (handled <= sent) std::this_thread::yield();
+    }
+    bench.pulse(0, 1);
+  });
+  const auto edge = bench.ready.wait(bench.now_ns() + patience_ns);
+  other.join();
+  REQUIRE(edge);
+  CHECK(edge->t_ns == first_ns);
+  CHECK(handled == 5);
+  sigaction(SIGUSR1, &before, nullptr);
 }
 
 TEST_CASE("gpio: edges that the kernel had no room for are seen in the numbers, where it counts") {
