@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "drivers/device/device_source.hpp"
 #include "firmware/eye/source_list.hpp"
 #include "hal/try.hpp"
 
@@ -11,19 +12,20 @@ namespace compueye::firmware {
 hal::Result<AttachedBench> AttachedBench::create(const Board& board, const LightWanted& wanted, hal::Clock& clock,
                                                  Person person) {
   TRY(light_kind(wanted, false));
-  return create(TRY(attached_eye(board, clock)), board.object, wanted, clock, std::move(person));
+  return create(TRY(real_eye(board, clock)), board.object, wanted, clock, std::move(person));
 }
 
-hal::Result<AttachedBench> AttachedBench::create(std::unique_ptr<device::DeviceSource> eye,
-                                                 const hal::ObjectPlane& plane, const LightWanted& wanted,
+hal::Result<AttachedBench> AttachedBench::create(BoardEye eye, const hal::ObjectPlane& plane, const LightWanted& wanted,
                                                  hal::Clock& clock, Person person) {
   const LightKind* const kind = TRY(light_kind(wanted, false));
   AttachedBench bench;
-  bench.light = TRY(kind->make(wanted, {plane, *eye, clock, std::move(person)}));
-  bench.exposure.now_ns = eye->configuration().exposure_ns;
-  bench.exposure.least_ns = std::max<std::int64_t>(eye->descriptor().least_exposure_ns, 1);
-  bench.exposure.set = [at = eye.get()](std::int64_t ns) { return at->set_exposure(ns); };
-  bench.eye = std::move(eye);
+  bench.light = TRY(kind->make(wanted, {plane, *eye.source, eye.attached, clock, std::move(person)}));
+  if (device::DeviceSource* const at = eye.attached) {
+    bench.exposure =
+        ExposureControl{at->configuration().exposure_ns, std::max<std::int64_t>(at->descriptor().least_exposure_ns, 1),
+                        [at](std::int64_t ns) { return at->set_exposure(ns); }};
+  }
+  bench.eye = std::move(eye.source);
   return bench;
 }
 

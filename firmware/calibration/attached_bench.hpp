@@ -1,31 +1,31 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
-#include "drivers/device/device_source.hpp"
 #include "firmware/calibration/exposure_choice.hpp"
 #include "firmware/calibration/lights.hpp"
 #include "firmware/eye/board.hpp"
+#include "firmware/eye/source_list.hpp"
 #include "hal/clock.hpp"
 #include "hal/illuminator.hpp"
 
 namespace compueye::firmware {
 
-/// An eye on a cable before a light, in real time.
+/// An eye that is no simulated one before a light, in real time.
 struct AttachedBench {
-  std::unique_ptr<device::DeviceSource> eye;
-  ExposureControl exposure;
+  std::unique_ptr<hal::SampleSource> eye;
+  std::optional<ExposureControl> exposure;  ///< nothing: it has none that can be set
   std::unique_ptr<hal::Illuminator> light;
 
-  /// With the eye of the board. `clock` must outlive it. Errors: those of attached_eye() and light_kind(), and of the
+  /// With the eye of the board. `clock` must outlive it. Errors: those of real_eye() and light_kind(), and of the
   /// light.
   [[nodiscard]] static hal::Result<AttachedBench> create(const Board& board, const LightWanted& wanted,
                                                          hal::Clock& clock, Person person);
 
   /// The same with an eye that is there.
-  [[nodiscard]] static hal::Result<AttachedBench> create(std::unique_ptr<device::DeviceSource> eye,
-                                                         const hal::ObjectPlane& plane, const LightWanted& wanted,
-                                                         hal::Clock& clock, Person person);
+  [[nodiscard]] static hal::Result<AttachedBench> create(BoardEye eye, const hal::ObjectPlane& plane,
+                                                         const LightWanted& wanted, hal::Clock& clock, Person person);
 };
 
 }  // namespace compueye::firmware

@@ -48,7 +48,7 @@ Result<void> set_lamp(const LightSite& site, const protocol::Illumination& wante
   constexpr int most_tries = 5;
   constexpr std::int64_t wait_ns = 100'000'000;
   for (int tries = 1;; ++tries) {
-    auto done = site.eye.set_illumination(wanted);
+    auto done = site.device->set_illumination(wanted);
     if (done || tries >= most_tries) return done;
     do {
       TRY(keep_reading(site, wait_ns));
@@ -57,8 +57,12 @@ Result<void> set_lamp(const LightSite& site, const protocol::Illumination& wante
 }
 
 Light device(const LightWanted&, const LightSite& site) {
+  if (site.device == nullptr) {
+    return hal::fail(ErrorCode::unsupported, site.eye.describe().serial,
+                     "has converters and no device of its own, so no lamps: show patterns by another --light");
+  }
   return TRY(illuminator::DeviceLight::create(
-      site.eye.descriptor(), site.plane.rows, site.plane.cols,
+      site.device->descriptor(), site.plane.rows, site.plane.cols,
       [site](const protocol::Illumination& each) { return set_lamp(site, each); }, site.clock));
 }
 

@@ -36,7 +36,8 @@ struct Person {
 /// What a light is made for, and what it may use. All of it outlives the light.
 struct LightSite {
   hal::ObjectPlane plane;
-  device::DeviceSource& eye;
+  hal::SampleSource& eye;
+  device::DeviceSource* device;  ///< the eye, where it has a device that may have lamps; else null
   hal::Clock& clock;
   Person person;
 };

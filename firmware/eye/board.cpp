@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "firmware/eye/board_wiring.hpp"
 #include "firmware/eye/source_kinds.hpp"
 #include "firmware/files/cache_folder.hpp"
 #include "hal/try.hpp"
@@ -174,7 +175,11 @@ hal::Result<void> check_reconstruction(const Board& board) {
 }  // namespace
 
 bool SourceSettings::simulated() const noexcept {
-  return bus_of_kind(kind) == nullptr;
+  return std::ranges::any_of(source_kinds, [&](const SourceKind& each) { return each.simulated && each.name == kind; });
+}
+
+bool SourceSettings::wired() const noexcept {
+  return !simulated() && bus_of_kind(kind) == nullptr;
 }
 
 double Board::noise_sigma() const noexcept {
@@ -211,6 +216,7 @@ hal::Result<void> check_board(const Board& board) {
   TRY(with_line(board, board.object.validate()));
   TRY(check_sensor(board));
   TRY(check_as_built(board));
+  TRY(check_wiring(board));
   return check_reconstruction(board);
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hal/build_settings.hpp"
 #include "hal/detector_settings.hpp"
@@ -21,6 +22,21 @@ struct SourceSettings {
   int fifo_frames = 0;         ///< frames a simulated device can hold before it loses one, >= 1
 
   [[nodiscard]] bool simulated() const noexcept;
+  [[nodiscard]] bool wired() const noexcept;  ///< to this machine, by WiringSettings
+};
+
+/// How the converters of an eye hang on this machine. Lines are "CHIP LINE", "gpiochip0 17" or by the line's name.
+struct WiringSettings {
+  std::string chip;            ///< of frontend::front_ends()
+  int chips = 0;               ///< >= 1
+  std::string data;            ///< device file of the bus
+  int clock_hz = 0;            ///< of it; 0: as fast as the chip goes
+  std::string settings;        ///< device file of the chip's own bus for settings, empty: none
+  std::string range;           ///< of the chip's inputs, by name; empty: its first
+  std::string data_ready;      ///< line that falls when a frame is complete
+  std::string select;          ///< "CHIP LINE ...", the lowest bit of a chip's number first
+  std::string reset, sync;     ///< lines, empty: none
+  std::vector<int> ommatidia;  ///< of channels, M of them; empty: channel c is ommatidium c
 };
 
 struct SceneSettings {
@@ -41,6 +57,7 @@ struct Board {
   hal::DetectorSettings detector;  ///< of [sensor] too: what its simulation does besides
   hal::BuildSettings build;
   SourceSettings source;
+  WiringSettings wiring;
   recon::Objective objective;    ///< but for its lambda, which choose_lambda() finds
   recon::Plan plan;              ///< but for what depends on the response
   std::optional<double> lambda;  ///< by hand, >= 0; absent: by rule from the noise

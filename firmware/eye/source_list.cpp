@@ -14,6 +14,7 @@
 #include "firmware/eye/planned_eye.hpp"
 #include "firmware/eye/simulated_board.hpp"
 #include "firmware/eye/source_kinds.hpp"
+#include "firmware/eye/wired_eye.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -75,6 +76,7 @@ hal::Result<BoardEye> board_eye(const Board& board, EyeWanted wanted, hal::Clock
                                  "the recording",
                                  board.name));
   }
+  if (board.source.wired()) return BoardEye{TRY(wired_eye(board, clock)), nullptr, nullptr};
   return attached(board, clock);
 }
 
@@ -91,6 +93,13 @@ hal::Result<std::unique_ptr<device::DeviceSource>> attached_eye(const Board& boa
   auto eye = TRY(device::DeviceSource::create(std::move(settings), std::move(transport), clock));
   TRY(check_fits(eye->describe(), board, "eye " + eye->describe().serial));
   return eye;
+}
+
+hal::Result<BoardEye> real_eye(const Board& board, hal::Clock& clock) {
+  if (board.source.wired()) return BoardEye{TRY(wired_eye(board, clock)), nullptr, nullptr};
+  auto eye = TRY(attached_eye(board, clock));
+  device::DeviceSource* const at = eye.get();
+  return BoardEye{std::move(eye), nullptr, at};
 }
 
 hal::Result<void> check_fits(const hal::SourceDescription& source, const Board& board, const std::string& place) {

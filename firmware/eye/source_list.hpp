@@ -54,6 +54,10 @@ struct BoardEye {
 /// however it was measured. `clock` must outlive it. Errors: as above.
 [[nodiscard]] hal::Result<std::unique_ptr<device::DeviceSource>> attached_eye(const Board& board, hal::Clock& clock);
 
+/// The eye of a board that is not simulated, exposed as attached_eye()'s. Errors: those of attached_eye() and
+/// wired_eye().
+[[nodiscard]] hal::Result<BoardEye> real_eye(const Board& board, hal::Clock& clock);
+
 /// Whether a source is of as many channels and as deep as the board's eye. Error mismatch at `place`.
 [[nodiscard]] hal::Result<void> check_fits(const hal::SourceDescription& source, const Board& board,
                                            const std::string& place);

@@ -208,6 +208,47 @@ TEST_CASE("the boards that come with the project load and are what they say") {
   }
 }
 
+TEST_CASE("boards of converters say which, and how they hang on the machine") {
+  for (const auto& [name, bits] : {std::pair{"rpi4-spi-mcp3208", 12}, std::pair{"rpi5-spi-ddc264", 20}}) {
+    CAPTURE(name);
+    const auto board = load_board(boards / name);
+    REQUIRE_MESSAGE(board.has_value(), board.error().text());
+    CHECK(board->source.wired());
+    CHECK_FALSE(board->source.simulated());
+    CHECK(board->sensor.bits == bits);
+    CHECK(board->wiring.data == "/dev/spidev0.0");
+    CHECK(fs::exists(boards / name / "README.md"));
+  }
+}
+
+TEST_CASE("wiring that a converter cannot work by is refused at its line") {
+  const std::string good = text_of(boards / "rpi4-spi-mcp3208" / "board.toml");
+  REQUIRE(parse_board(good, "b.toml").has_value());
+  const auto refused = [&](const std::string& from, const std::string& to, const std::string& says) {
+    std::string text = good;
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+    const auto board = parse_board(text, "b.toml");
+    CAPTURE(to);
+    REQUIRE_FALSE(board.has_value());
+    CHECK_MESSAGE(board.error().text().find(says) != std::string::npos, board.error().text());
+    CHECK(board.error().place.starts_with("b.toml:"));
+  };
+  refused("kind = \"spi\"", "kind = \"usb\"", "[wiring] is of kind");
+  refused("chip = \"mcp3208\"", "chip = \"mcp3209\"", "mcp3208");
+  refused("chips = 8", "chips = 7", "56 channels");
+  refused("bits = 12", "bits = 16", "gives 12");
+  refused("data = \"/dev/spidev0.0\"", "", "chip and data");
+  refused("select = \"gpiochip0 5 6 13\"", "", "needs select");
+  refused("select = \"gpiochip0 5 6 13\"", "select = \"gpiochip0\"", "expected the chip and the line");
+  refused("sync = \"gpiochip0 26\"", "sync = \"gpiochip0 26 27\"", "expected the chip and the line");
+  refused("clock_hz = 1000000", "data_ready = \"gpiochip0 17\"", "means nothing to mcp3208");
+  refused("clock_hz = 1000000", "range = \"5 V\"", "one range");
+  refused("clock_hz = 1000000", "ommatidia = [1, 2, 3]", "each from 0 to 63");
+  refused("frame_rate_hz = 200", "frame_rate_hz = 200000", "frame_rate_hz");
+}
+
 TEST_CASE("a board that is not there is answered with those that are") {
   const auto near = load_board(boards / "sim-8x9");
   REQUIRE_FALSE(near.has_value());
@@ -224,7 +265,8 @@ TEST_CASE("a board that is not there is answered with those that are") {
 
   const auto far = load_board(boards / "something-else-entirely");
   REQUIRE_FALSE(far.has_value());
-  for (const char* name : {"generic-hid", "generic-usb", "sim-120x120", "sim-80x80", "sim-8x8"}) {
+  for (const char* name :
+       {"generic-hid", "generic-usb", "rpi4-spi-mcp3208", "rpi5-spi-ddc264", "sim-120x120", "sim-80x80", "sim-8x8"}) {
     CHECK(compueye::test::names(far.error().sentence, name));
   }
 

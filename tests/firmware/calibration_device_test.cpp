@@ -45,20 +45,22 @@ struct Lab {
 
   hal::Result<std::int64_t> run(const CalibrationRequest& request, std::int64_t until = 1'000'000,
                                 const std::function<void(std::int64_t)>& at = {}) {
-    auto bench = AttachedBench::create(cable.source(), eye.board.object, light, clock, person);
+    auto source = cable.source();
+    device::DeviceSource* const at_eye = source.get();
+    auto bench = AttachedBench::create({std::move(source), nullptr, at_eye}, eye.board.object, light, clock, person);
     REQUIRE_MESSAGE(bench.has_value(), bench.error().text());
     eye.board.source.serial = bench->eye->describe().serial;
     auto file = std::ifstream(path).good()
                     ? calib::EyeFile::open(path, calib::EyeFileMode::write)
                     : calib::EyeFile::create(path, {eye.board.source.serial, eye.board.eye, eye.board.object});
     REQUIRE(file.has_value());
-    auto done = run_calibration(request, {*bench->eye, *bench->light, clock, &bench->exposure}, *file,
+    auto done = run_calibration(request, {*bench->eye, *bench->light, clock, &*bench->exposure}, *file,
                                 [&](const calib::SessionProgress& p) {
                                   if (at) at(p.taken);
                                   return p.taken < until;
                                 });
-    chosen_ns = bench->exposure.now_ns;
-    restarts = bench->eye->failures()[device::Failure::restart];
+    chosen_ns = bench->exposure->now_ns;
+    restarts = at_eye->failures()[device::Failure::restart];
     return done;
   }
 

@@ -59,7 +59,8 @@ constexpr std::array<FolderRule, 29> rules{{
     {"firmware/text", "hal firmware/text", "fmt nlohmann-json", false, none, false,
      "firmware/text: hal, fmt and nlohmann-json"},
     {"firmware/eye",
-     "hal recon recon/core calib calib/eye_file sim drivers/protocol drivers/device drivers/transport firmware/files "
+     "hal recon recon/core calib calib/eye_file sim drivers/protocol drivers/frontend drivers/device drivers/transport "
+     "firmware/files "
      "firmware/pipeline firmware/text firmware/eye",
      "toml++ fmt xxhash", false, none, false,
      "firmware/eye: hal, recon, calib and its eye file, sim, drivers, firmware/files, text and pipeline (its "

@@ -70,6 +70,7 @@ std::string configuration_of(const Board& board) {
   std::string text;
   for (const Setting& setting : settings()) {
     const bool counts = setting.section == "eye" || setting.section == "object" || setting.section == "sensor" ||
+                        (setting.section == "wiring" && board.source.wired()) ||
                         (setting.key == "frame_rate_hz" && !board.source.simulated());
     if (!counts) continue;
     if (const auto value = setting.show(board)) {
@@ -176,7 +177,8 @@ Result<calib::StoredSession> taken(const CalibrateRequest& o, Board& board, std:
     AttachedBench bench = TRY(attached_bench(o, board, session));
     board.source.serial = bench.eye->describe().serial;
     file = TRY(writable_eye_file(o.eye, board));
-    id = TRY(take(o, board, {*bench.eye, *bench.light, session.clock(), &bench.exposure}, *file, teller));
+    id = TRY(take(o, board, {*bench.eye, *bench.light, session.clock(), bench.exposure ? &*bench.exposure : nullptr},
+                  *file, teller));
   }
   std::vector<calib::StoredSession> sessions = TRY(file->sessions());
   return std::move(*std::ranges::find(sessions, id, &calib::StoredSession::id));
@@ -203,9 +205,9 @@ Result<std::vector<calib::Capture>> seen_now(const CalibrateRequest& o, Board& b
   board.source.serial = bench.eye->describe().serial;
   TRY(check_is_of(file, board));
   TRY(check_bits(*bench.eye, check));
-  if (check.exposure_ns()) TRY(bench.exposure.change(*check.exposure_ns()));
-  return take_captures(check.plan(), check.schedule(), {*bench.eye, *bench.light, session.clock(), &bench.exposure},
-                       watch);
+  if (check.exposure_ns() && bench.exposure) TRY(bench.exposure->change(*check.exposure_ns()));
+  return take_captures(check.plan(), check.schedule(),
+                       {*bench.eye, *bench.light, session.clock(), bench.exposure ? &*bench.exposure : nullptr}, watch);
 }
 
 Result<void> check_again(const CalibrateRequest& o, Board& board, Session& session) {

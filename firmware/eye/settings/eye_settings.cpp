@@ -132,7 +132,8 @@ void add_sensor(std::vector<Setting>& all) {
 
 void add_source(std::vector<Setting>& all) {
   add(all, "source",
-      {field<&Board::source, &SourceSettings::kind>("kind", "simulated, or an eye on USB or HID")
+      {field<&Board::source, &SourceSettings::kind>(
+           "kind", "simulated, an eye on USB or HID, or converters on this machine's SPI, which [wiring] describes")
            .one_of({source_kind_names.begin(), source_kind_names.end()})
            .stated(),
        field<&Board::source, &SourceSettings::serial>(

@@ -17,13 +17,14 @@ namespace {
 
 using hal::ErrorCode;
 
-constexpr std::array<Section, 8> all_sections{{
+constexpr std::array<Section, 9> all_sections{{
     {"board", "What this board is called."},
     {"eye", "The eye: where each ommatidium sits, where it looks and how wide it sees."},
     {"object", "The plane the eye looks at, and the picture that is reconstructed on it."},
     {"sensor", "From light to codes."},
     {"build", "How far a simulated eye is from its drawing; left out, not at all."},
     {"source", "Where the samples come from."},
+    {"wiring", "How the converters of an eye of kind \"spi\" hang on this machine; of no other kind."},
     {"reconstruction", "How a frame is solved."},
     {"scene", "What a simulated eye sees when the command line names nothing else."},
 }};
@@ -262,6 +263,7 @@ std::span<const Section> sections() {
 std::span<const Setting> settings() {
   static const std::vector<Setting> rows = [] {
     std::vector<Setting> all = eye_settings();
+    for (Setting& row : wiring_settings()) all.push_back(std::move(row));
     for (Setting& row : as_built_settings()) all.push_back(std::move(row));
     for (Setting& row : reconstruction_settings()) all.push_back(std::move(row));
     return all;

@@ -33,8 +33,10 @@ TEST_CASE("every capture of a session before a display is of its own pattern and
   std::vector<std::string> told;
   LightWanted light;
   light.kind = "display";
+  auto source = cable.source();
+  device::DeviceSource* const at_eye = source.get();
   const auto bench =
-      AttachedBench::create(cable.source(), eye.board.object, light, clock,
+      AttachedBench::create({std::move(source), nullptr, at_eye}, eye.board.object, light, clock,
                             {[&](std::string_view line) { told.emplace_back(line); }, [] { return true; }});
   REQUIRE_MESSAGE(bench.has_value(), bench.error().text());
   REQUIRE(told.size() == 1);
@@ -45,7 +47,7 @@ TEST_CASE("every capture of a session before a display is of its own pattern and
   const test::TemporaryFolder folder;
   auto file = calib::EyeFile::create((folder.path() / "a.eye").string(), {"CE-LIT", eye.board.eye, eye.board.object});
   REQUIRE(file.has_value());
-  ExposureControl exposure = bench->exposure;
+  ExposureControl exposure = *bench->exposure;
   const auto session = run_calibration(request, {*bench->eye, *bench->light, clock, &exposure}, *file,
                                        [](const calib::SessionProgress&) { return true; });
   REQUIRE_MESSAGE(session.has_value(), session.error().text());

@@ -50,7 +50,12 @@ std::string small_board(const compueye::test::TemporaryFolder& folder) {
 }
 
 void set(firmware::OptionList& options, const std::string& name, const std::string& value) {
-  *std::get<std::string*>(std::get<firmware::Target>(options.at(name).target)) = value;
+  const auto& target = std::get<firmware::Target>(options.at(name).target);
+  if (auto* const maybe = std::get_if<std::optional<std::string>*>(&target)) {
+    **maybe = value;
+  } else {
+    *std::get<std::string*>(target) = value;
+  }
 }
 
 }  // namespace
