@@ -80,9 +80,11 @@ void EmulatedGpiochip::set(const Request& request, std::uint64_t mask, std::uint
     all |= (line.level ? 1U : 0U) << k;
   }
   settings_.push_back(all);
+  if (at_set) at_set(*this);
 }
 
 EmulatedGpiochip::Answer EmulatedGpiochip::ioctl(unsigned long request, void* argument) {
+  const std::lock_guard lock(mutex_);
   if (error_ != 0) return {-1, error_};
   if (!plugged_) return {-1, ENODEV};
   switch (request) {
@@ -194,6 +196,7 @@ EmulatedGpiochip::Answer EmulatedGpiochip::get_line_2(void* argument) {
 }
 
 EmulatedGpiochip::Answer EmulatedGpiochip::request_ioctl(int number, unsigned long request, void* argument) {
+  const std::lock_guard lock(mutex_);
   if (error_ != 0) return {-1, error_};
   if (!plugged_) return {-1, ENODEV};
   const Request& of = requests_[static_cast<std::size_t>(number)];
@@ -237,6 +240,7 @@ void EmulatedGpiochip::push(Request& request, bool rises, std::uint32_t line, st
 }
 
 void EmulatedGpiochip::edge(int line, bool rises, std::int64_t t_ns) {
+  const std::lock_guard lock(mutex_);
   const auto offset = static_cast<std::uint32_t>(line);
   lines[offset].level = rises;
   if (!(rises ? lines[offset].rising : lines[offset].falling)) return;
@@ -250,6 +254,7 @@ void EmulatedGpiochip::count_from(std::uint32_t number) {
 }
 
 void EmulatedGpiochip::unplug() {
+  const std::lock_guard lock(mutex_);
   plugged_ = false;
   for (Request& each : requests_) {
     if (each.edges < 0) continue;

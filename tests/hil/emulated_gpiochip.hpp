@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,8 @@ class EmulatedGpiochip {
   [[nodiscard]] const std::vector<std::uint32_t>& settings() const noexcept { return settings_; }
 
   std::vector<Line> lines;
+  /// Called whenever a program has set lines, by whom it is served.
+  std::function<void(const EmulatedGpiochip&)> at_set = {};
 
  private:
   struct Request {
@@ -77,6 +80,7 @@ class EmulatedGpiochip {
   Answer get_event(void* argument);
   Answer get_line_2(void* argument);
 
+  std::mutex mutex_;  // programs are served by one thread, edges may come from another
   std::string name_, last_consumer_;
   std::function<int(int)> open_file_;
   std::vector<Request> requests_;
