@@ -116,6 +116,20 @@ TEST_CASE("program: an eye on USB is calibrated before a display, and run expose
     return protocol::load_configuration(bytes).exposure_ns;
   });
   CHECK(exposed == static_cast<std::uint32_t>(std::llround(exposure_s * 1e9)));
+
+  run.check_every_s = 0.2;
+  run.light.kind = "display";
+  run.frames = 80;
+  firmware::Session checking;
+  const auto checked = firmware::run_board(run, checking);
+  REQUIRE_MESSAGE(checked.has_value(), checked.error().text());
+  const Json report = Json::parse(compueye::test::bytes_of(run.report));
+  INFO(report["checks"].dump());
+  CHECK(report["checks"]["looks"].get<int>() >= 1);
+  CHECK(report["checks"]["could_not_look"].get<int>() == 0);
+  CHECK(report["checks"]["changes"].get<int>() == 0);
+  CHECK(report["frames"]["checked"].get<int>() > 10);
+  CHECK(report["frames"]["balanced"].get<bool>());
 }
 
 }  // namespace compueye::hil
