@@ -16,7 +16,7 @@ constexpr std::string_view not_on_the_frame_path =
     "any regex memory_resource new cstdlib stdlib.h thread mutex shared_mutex condition_variable future coroutine";
 
 // "Who may include whom": the house's table, a row a folder.
-constexpr std::array<FolderRule, 29> rules{{
+constexpr std::array<FolderRule, 30> rules{{
     {"hal", "hal", "tl-expected", false, none, false,
      "hal is contracts only: the standard library and tl::expected, no other folder, no OS header"},
 
@@ -79,6 +79,11 @@ constexpr std::array<FolderRule, 29> rules{{
      "hal recon recon/core calib calib/eye_file firmware/calibration firmware/files firmware/text firmware/eye_page",
      "fmt", false, none, false,
      "firmware/eye_page: hal, calib and its eye file, firmware/calibration, files and text, fmt"},
+    {"firmware/doctor",
+     "hal recon drivers/protocol drivers/frontend firmware/eye firmware/files firmware/operating_points firmware/text "
+     "firmware/doctor",
+     "fmt", true, none, false,
+     "firmware/doctor: hal, drivers/frontend, firmware/eye, files, operating_points and text, fmt and OS headers"},
     {"firmware/app", any, any, true, none, false, "firmware/app wires everything"},
     {"studies",
      "hal recon recon/core calib calib/eye_file sim drivers/protocol drivers/transport drivers/device "

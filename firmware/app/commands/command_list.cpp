@@ -6,13 +6,14 @@ namespace compueye::firmware {
 
 extern const Command run_command, simulate_command, response_command, reconstruct_command, compare_command,
     pareto_command, stability_command, inspect_command, record_command, replay_command, devices_command,
-    conformance_command, calibrate_command, export_command, import_command;
+    conformance_command, calibrate_command, export_command, import_command, doctor_command;
 
 std::span<const Command* const> commands() noexcept {
   static constexpr std::array rows{
-      &run_command,    &simulate_command,  &response_command,  &reconstruct_command, &compare_command,
-      &pareto_command, &stability_command, &calibrate_command, &inspect_command,     &import_command,
-      &export_command, &record_command,    &replay_command,    &devices_command,     &conformance_command,
+      &run_command,     &simulate_command, &response_command,  &reconstruct_command,
+      &compare_command, &pareto_command,   &stability_command, &calibrate_command,
+      &inspect_command, &import_command,   &export_command,    &record_command,
+      &replay_command,  &devices_command,  &doctor_command,    &conformance_command,
   };
   return rows;
 }

@@ -104,8 +104,7 @@ Figures devices_report(const AttachedEyes& attached, const std::string& boards,
             {"notes", attached.notes},
             {"devices", devices},
             {"broken", broken},
-            {"back_ends", Value::List(source_kind_names.begin(), source_kind_names.end())},
-            {"back_ends_not_built_in", Value::List{"spi"}}};
+            {"back_ends", Value::List(source_kind_names.begin(), source_kind_names.end())}};
   f.say(attached_text(eyes) + troubles + "\n" + boards_text(boards, devices));
   return defects.empty() ? f : f.say("\n" + defects);
 }

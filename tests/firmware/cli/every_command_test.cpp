@@ -38,6 +38,7 @@ const std::map<std::string_view, Failing> failing{
     {"record", {"--board missing --out z.rec", "missing"}},
     {"replay", {"missing.rec", "missing.rec"}},
     {"devices", {"--boards missing", "missing"}},
+    {"doctor", {"--board missing", "missing"}},
     {"conformance", {"--bus hid --serial missing", "missing"}},
 };
 
