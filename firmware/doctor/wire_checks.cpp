@@ -35,7 +35,7 @@ std::vector<std::string> files_of(const WiringSettings& wiring) {
     }
   }
   std::ranges::sort(files);
-  files.erase(std::ranges::unique(files).begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
 }
 
