@@ -3,6 +3,7 @@
 #include "drivers/device/converter_source.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <random>
 #include <set>
@@ -223,6 +224,48 @@ TEST_CASE("edges lost on the wire and in the kernel are counted apart, and exact
     CHECK(account.estimated == 0);
     CHECK(rig.source->failures()[ConverterFailure::missed_edge] == 7);
     CHECK(rig.source->failures()[ConverterFailure::late_host] == 9);
+  }
+}
+
+TEST_CASE("frames of a storm of edges have no time, and are lost rather than delivered with a wrong one") {
+  for (const ConverterEye& eye : converter_eyes) {
+    if (!frontend::find_front_end(eye.chip)->data_ready) continue;
+    CAPTURE(eye.chip);
+    ConverterRig rig(eye);
+    REQUIRE(rig.source->start());
+    std::optional<std::int64_t> first_ns;
+    rig.inject({.kind = FrontEndFaultKind::edge_storm,
+                .at_ns = 10 * rig.period_ns(),
+                .duration_ns = 20 * rig.period_ns(),
+                .value = rig.period_ns() / 50});
+    while (rig.source->account().produced < 60) {
+      const auto block = rig.next();
+      REQUIRE(block);
+      if (!first_ns) first_ns = block->t_ns;
+      const std::int64_t off_ns = block->t_ns - *first_ns - static_cast<std::int64_t>(block->frame) * rig.period_ns();
+      CAPTURE(block->frame);
+      CHECK(std::abs(off_ns) < rig.period_ns() / 4);
+    }
+    CHECK(rig.source->failures()[ConverterFailure::unclear_edge] >= 15);
+    CHECK(rig.source->failures()[ConverterFailure::unclear_edge] <= 22);
+    CHECK(rig.source->account().drops(hal::DropReason::transport_gap) ==
+          rig.source->failures()[ConverterFailure::unclear_edge]);
+  }
+}
+
+TEST_CASE("chips of whose answers none is good are reset after three frames") {
+  for (const ConverterEye& eye : converter_eyes) {
+    CAPTURE(eye.chip);
+    ConverterRig rig(eye);
+    REQUIRE(rig.source->start());
+    REQUIRE(rig.next());
+    rig.inject({.kind = FrontEndFaultKind::miso_low, .duration_ns = 8 * rig.period_ns()});
+    const auto block = rig.next();
+    REQUIRE(block);
+    CHECK(rig.source->failures()[ConverterFailure::stuck_low] >= 3);
+    CHECK(rig.source->failures()[ConverterFailure::restart] >= 1);
+    CHECK(rig.source->account().drops(hal::DropReason::corrupt) == 3);
+    CHECK(rig.source->outages() == 1);
   }
 }
 
