@@ -209,15 +209,19 @@ TEST_CASE("the boards that come with the project load and are what they say") {
 }
 
 TEST_CASE("boards of converters say which, and how they hang on the machine") {
-  for (const auto& [name, bits] : {std::pair{"rpi4-spi-mcp3208", 12}, std::pair{"rpi5-spi-ddc264", 20}}) {
-    CAPTURE(name);
-    const auto board = load_board(boards / name);
+  struct Case {
+    const char* name;
+    int bits;
+  };
+  for (const Case& c : {Case{"rpi4-spi-mcp3208", 12}, Case{"rpi5-spi-ddc264", 20}}) {
+    CAPTURE(c.name);
+    const auto board = load_board(boards / c.name);
     REQUIRE_MESSAGE(board.has_value(), board.error().text());
     CHECK(board->source.wired());
     CHECK_FALSE(board->source.simulated());
-    CHECK(board->sensor.bits == bits);
+    CHECK(board->sensor.bits == c.bits);
     CHECK(board->wiring.data == "/dev/spidev0.0");
-    CHECK(fs::exists(boards / name / "README.md"));
+    CHECK(fs::exists(boards / c.name / "README.md"));
   }
 }
 

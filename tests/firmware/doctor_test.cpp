@@ -128,10 +128,14 @@ TEST_CASE("doctor: governor, heat, supply, limits, clock and kernel") {
 
   const std::string source = "/sys/devices/system/clocksource/clocksource0/current_clocksource";
   CHECK(ward.look(examine_clock_source).health == Health::none);
-  for (const auto& [name, health] : {std::pair{"jiffies", Health::bad}, std::pair{"hpet", Health::note},
-                                     std::pair{"arch_sys_counter", Health::good}}) {
-    ward.file(source, name);
-    CHECK(ward.look(examine_clock_source).health == health);
+  struct Source {
+    const char* name;
+    Health health;
+  };
+  for (const Source& each :
+       {Source{"jiffies", Health::bad}, Source{"hpet", Health::note}, Source{"arch_sys_counter", Health::good}}) {
+    ward.file(source, each.name);
+    CHECK(ward.look(examine_clock_source).health == each.health);
   }
   CHECK(ward.look(examine_kernel).health == Health::note);
   ward.file("/sys/kernel/realtime", "1");
