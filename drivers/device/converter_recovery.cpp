@@ -12,7 +12,7 @@ namespace {
 
 using hal::ErrorCode;
 
-/// The wires that a kind of chip needs.
+/// The wires that a kind of chip needs, but for those that its front end asks for when it uses them.
 hal::Result<void> check_wires(const ConverterSettings& settings, const ConverterWires& wires) {
   const frontend::FrontEndRow& chip = *settings.chip;
   const auto missing = [&](const char* what) {
@@ -23,10 +23,6 @@ hal::Result<void> check_wires(const ConverterSettings& settings, const Converter
   if (chip.data_ready != (wires.ready != nullptr)) {
     return chip.data_ready ? missing("a line that says that data are ready")
                            : hal::fail(ErrorCode::usage, std::string(chip.name), "says nothing of data that are ready");
-  }
-  const int chips = settings.front_end.chips;
-  if (!chip.chain && chips > 1 && (!wires.select || chips > 1 << wires.select->count())) {
-    return missing("lines that select one of its chips");
   }
   return {};
 }
@@ -120,7 +116,7 @@ hal::Result<void> ConverterSource::begin_stream() {
   }
   pace_.begin(period_ns_);
   frame_edge_.reset();
-  bad_frames_ = 0;
+  bad_frames_ = frames_of_stream_ = 0;
   last_frame_ns_ = turn_ns_ = clock_.now_ns();
   streaming_ = true;
   return {};
@@ -164,10 +160,14 @@ void ConverterSource::lose_stream(hal::Error error) {
   back_off_.reset();
   recovering_.store(true, std::memory_order_relaxed);
   last_error_ = std::move(error);
-  if (settings_.recovery_limit_ns == 0) {
-    given_up_ = true;
-    ++failures_[ConverterFailure::gave_up];
-  }
+  give_up_when_over(now_ns);
+}
+
+void ConverterSource::give_up_when_over(std::int64_t now_ns) {
+  if (now_ns - outage_ns_ < settings_.recovery_limit_ns) return;
+  given_up_ = true;
+  recovering_.store(false, std::memory_order_relaxed);
+  ++failures_[ConverterFailure::gave_up];
 }
 
 void ConverterSource::attempt_failed(hal::Error error) {
@@ -175,10 +175,7 @@ void ConverterSource::attempt_failed(hal::Error error) {
   ++attempts_;
   resume_ns_ = now_ns + back_off_.next_ns();
   last_error_ = std::move(error);
-  if (now_ns - outage_ns_ < settings_.recovery_limit_ns) return;
-  given_up_ = true;
-  recovering_.store(false, std::memory_order_relaxed);
-  ++failures_[ConverterFailure::gave_up];
+  give_up_when_over(now_ns);
 }
 
 void ConverterSource::recover(std::int64_t deadline_ns) {

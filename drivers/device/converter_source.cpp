@@ -17,6 +17,8 @@ using hal::DropReason;
 constexpr int most_edges_at_once = 64;
 constexpr int most_edges_left = 4096;
 constexpr int most_bad_frames = 3;
+// A line that oscillates has a first edge after every restart, which looks like a frame's.
+constexpr int frames_that_prove = 3;
 
 /// A row a ChipFault but none.
 constexpr std::array fault_rows{ConverterFailure::crc_error,     ConverterFailure::wrong_place,
@@ -87,15 +89,16 @@ std::optional<ConverterSource::Due> ConverterSource::wait_for_edge(std::int64_t 
       lose_stream(edge.error());
       return std::nullopt;
     }
-    if (frame_edge_) break;
-    if (clock_.now_ns() >= silent_ns) {
+    break;
+  }
+  if (!frame_edge_) {
+    if (clock_.now_ns() >= last_frame_ns_ + silence_ns_) {
       ++failures_[ConverterFailure::silence];
       lose_stream(
           {hal::ErrorCode::timeout, wires_.ready->name(), "does not say that data are ready, or says it without end"});
     }
     return std::nullopt;
   }
-  if (!frame_edge_) return std::nullopt;
   const std::int64_t t_ns = std::exchange(frame_edge_, std::nullopt)->t_ns;
   return Due{t_ns - period_ns_, pace_.next_ns().value_or(t_ns + period_ns_)};
 }
@@ -119,11 +122,19 @@ std::optional<ConverterSource::Due> ConverterSource::wait_for_turn(std::int64_t 
 
 hal::Result<void> ConverterSource::exchange() {
   if (wires_.sync) TRY(wires_.sync->set(1));
+  auto moved = exchange_all();
+  if (wires_.sync) {
+    auto low = wires_.sync->set(0);
+    if (moved && !low) return low;
+  }
+  return moved;
+}
+
+hal::Result<void> ConverterSource::exchange_all() {
   for (const frontend::Exchange& each : front_end_->frame()) {
     if (wires_.select) TRY(wires_.select->set(each.select));
     TRY(wires_.data->exchange(each.segments));
   }
-  if (wires_.sync) TRY(wires_.sync->set(0));
   return {};
 }
 
@@ -179,8 +190,10 @@ hal::SampleBlock ConverterSource::block_of(const Due& due) noexcept {
   block.flags.saturated = std::find(codes_.begin(), codes_.end(), most) != codes_.end();
   ++account_.produced;
   ++account_.delivered;
-  in_outage_ = false;
-  recovering_.store(false, std::memory_order_relaxed);
+  if (++frames_of_stream_ >= frames_that_prove) {
+    in_outage_ = false;
+    recovering_.store(false, std::memory_order_relaxed);
+  }
   return block;
 }
 

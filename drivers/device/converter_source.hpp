@@ -52,8 +52,9 @@ struct ConverterSettings {
 ///
 /// read() recovers by itself: chips are reset and set anew after three frames without a good chip, after one that says
 /// that it lost its settings, after a failed transfer and in silence; the second attempt opens the device files anew.
-/// Meanwhile it times out, and no frames are made. It returns `disconnected` when that was given up. An attempt is not
-/// cut off at read()'s deadline: it takes what the chips' resets take, 20 ms as a rule.
+/// Meanwhile it times out, and no frames are made; an outage is over with the third frame after it. It returns
+/// `disconnected` when that was given up. An attempt is not cut off at read()'s deadline: it takes what the chips'
+/// resets take, 20 ms as a rule.
 ///
 /// After start() read() neither allocates nor throws while frames come.
 class ConverterSource final : public hal::SampleSource {
@@ -95,6 +96,7 @@ class ConverterSource final : public hal::SampleSource {
   [[nodiscard]] std::optional<Due> wait_for_turn(std::int64_t deadline_ns);
   [[nodiscard]] std::optional<hal::SampleBlock> read_frame(const Due& due);
   [[nodiscard]] hal::Result<void> exchange();
+  [[nodiscard]] hal::Result<void> exchange_all();
   void count_chips(const frontend::FrameReport& report) noexcept;
   [[nodiscard]] hal::SampleBlock block_of(const Due& due) noexcept;
   void drop(std::uint64_t frames, hal::DropReason reason) noexcept;
@@ -108,6 +110,7 @@ class ConverterSource final : public hal::SampleSource {
   void recover(std::int64_t deadline_ns);
   [[nodiscard]] hal::Result<void> attempt();
   void attempt_failed(hal::Error error);
+  void give_up_when_over(std::int64_t now_ns);
   void count_failed(const hal::Error& error) noexcept;
 
   ConverterSettings settings_;
@@ -131,6 +134,7 @@ class ConverterSource final : public hal::SampleSource {
   std::int64_t turn_ns_ = 0;             // of the next frame that the host asks for
   std::int64_t last_frame_ns_ = 0;       // when a frame last came, whatever was in it
   std::uint64_t overruns_ = 0;           // told in the next block
+  int frames_of_stream_ = 0;             // delivered since the chips were set up
   int bad_frames_ = 0;                   // in a row
 
   bool streaming_ = false, in_outage_ = false, given_up_ = false;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -177,13 +176,9 @@ hal::Result<std::unique_ptr<FrontEnd>> make(const FrontEndSettings& settings) {
   // 251.97 Hz has no end as a decimal number, and nobody can write it otherwise than rounded.
   constexpr double rounding = 1e-4;
   if (distance(*nearest) > rounding * rate_of(*nearest)) {
-    const auto number = [](double value) {
-      std::array<char, 32> text{};
-      return std::string(text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr);
-    };
     return hal::fail(hal::ErrorCode::out_of_range, std::string(ads131m08.name),
-                     "frame_rate_hz is " + number(settings.frame_rate_hz) + ", which is none of the chip's own; " +
-                         number(rate_of(*nearest)) + " is the nearest");
+                     "frame_rate_hz is " + number_text(settings.frame_rate_hz) + ", which is none of the chip's own; " +
+                         number_text(rate_of(*nearest)) + " is the nearest");
   }
   return std::make_unique<Ads131m08>(settings, static_cast<std::uint32_t>(nearest - oversampling.begin()));
 }

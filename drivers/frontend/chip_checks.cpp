@@ -13,12 +13,6 @@ namespace {
 
 constexpr int most_chips = 1024;
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
 std::string hex(std::uint32_t value, int bits) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string text = "0x";
@@ -47,9 +41,9 @@ hal::Result<void> check_settings(const FrontEndRow& row, const FrontEndSettings&
   const double clock = settings.clock_hz == 0 ? row.spi.clock_hz : settings.clock_hz;
   const double most = std::min(row.most_frames_hz, clock / bits);
   if (!(settings.frame_rate_hz > 0.0 && settings.frame_rate_hz <= most)) {
-    return refuse("frame_rate_hz is " + number(settings.frame_rate_hz) + ", expected more than 0 and at most " +
-                  number(most) + ": a chip makes " + number(row.most_frames_hz) + " and the clock moves " +
-                  number(clock / bits) + " of " + std::to_string(settings.chips) + " chips");
+    return refuse("frame_rate_hz is " + number_text(settings.frame_rate_hz) + ", expected more than 0 and at most " +
+                  number_text(most) + ": a chip makes " + number_text(row.most_frames_hz) + " and the clock moves " +
+                  number_text(clock / bits) + " of " + std::to_string(settings.chips) + " chips");
   }
   return {};
 }
@@ -82,6 +76,12 @@ hal::Result<void> check_read_back(const ReadBack& r) {
   return hal::fail(
       hal::ErrorCode::mismatch, std::string(r.name) + " chip " + std::to_string(r.chip),
       std::string(r.what) + " reads " + hex(r.read, r.bits) + ", expected " + hex(r.expected, r.bits) + "; " + look);
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
 }
 
 bool all_are(std::span<const std::byte> bytes, std::byte value) noexcept {

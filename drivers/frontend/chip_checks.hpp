@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "drivers/frontend/front_end.hpp"
@@ -34,6 +35,9 @@ struct ReadBack {
 
 /// Error mismatch: chip, register, what was read, what was expected, and what to look at.
 [[nodiscard]] hal::Result<void> check_read_back(const ReadBack& r);
+
+/// As short as it can be read back.
+[[nodiscard]] std::string number_text(double value);
 
 [[nodiscard]] bool all_are(std::span<const std::byte> bytes, std::byte value) noexcept;
 

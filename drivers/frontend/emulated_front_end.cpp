@@ -11,7 +11,7 @@ constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 constexpr std::size_t bits_of_byte = 8;
 
 bool bit_of(std::span<const std::byte> bytes, std::size_t bit) {
-  return bytes.empty() || (std::to_integer<unsigned>(bytes[bit / bits_of_byte]) >> (7 - bit % bits_of_byte) & 1U) != 0;
+  return (std::to_integer<unsigned>(bytes[bit / bits_of_byte]) >> (7 - bit % bits_of_byte) & 1U) != 0;
 }
 
 void set_bit(std::span<std::byte> bytes, std::size_t bit, bool level) {

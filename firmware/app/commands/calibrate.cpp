@@ -134,10 +134,10 @@ Result<std::optional<ErrorBudget>> budget_of(const CalibrateRequest& o, const Bo
 }
 
 /// A session is taken, or what is left of one: its id.
-Result<std::int64_t> take(const CalibrateRequest& o, const Board& board, const CalibrationBench& bench,
-                          calib::EyeFile& file, Teller& teller) {
+Result<std::int64_t> take(const CalibrateRequest& o, const calib::SessionPlan& plan, const Board& board,
+                          const CalibrationBench& bench, calib::EyeFile& file, Teller& teller) {
   CalibrationRequest request;
-  if (o.plan) request.plan = TRY(load_plan(*o.plan));
+  request.plan = plan;
   request.resume = o.resume;
   request.give_up = o.give_up;
   request.distance_mm = board.object.distance_mm;
@@ -160,8 +160,8 @@ Result<AttachedBench> attached_bench(const CalibrateRequest& o, const Board& boa
 }
 
 /// The session that there is to estimate, and its file, which is of the eye that is there.
-Result<calib::StoredSession> taken(const CalibrateRequest& o, Board& board, std::optional<calib::EyeFile>& file,
-                                   Session& session, Teller& teller) {
+Result<calib::StoredSession> taken(const CalibrateRequest& o, const calib::SessionPlan& plan, Board& board,
+                                   std::optional<calib::EyeFile>& file, Session& session, Teller& teller) {
   if (o.resume) {
     file = TRY(calib::EyeFile::open(o.eye, calib::EyeFileMode::write));
     TRY(check_is_of(*file, board));
@@ -172,13 +172,14 @@ Result<calib::StoredSession> taken(const CalibrateRequest& o, Board& board, std:
   if (board.source.simulated()) {
     file = TRY(writable_eye_file(o.eye, board));
     const SimulatedBench bench = TRY(simulated_bench(o, board));
-    id = TRY(take(o, board, {*bench.eye, *bench.display, *bench.clock}, *file, teller));
+    id = TRY(take(o, plan, board, {*bench.eye, *bench.display, *bench.clock}, *file, teller));
   } else {
     AttachedBench bench = TRY(attached_bench(o, board, session));
     board.source.serial = bench.eye->describe().serial;
     file = TRY(writable_eye_file(o.eye, board));
-    id = TRY(take(o, board, {*bench.eye, *bench.light, session.clock(), bench.exposure ? &*bench.exposure : nullptr},
-                  *file, teller));
+    id = TRY(take(o, plan, board,
+                  {*bench.eye, *bench.light, session.clock(), bench.exposure ? &*bench.exposure : nullptr}, *file,
+                  teller));
   }
   std::vector<calib::StoredSession> sessions = TRY(file->sessions());
   return std::move(*std::ranges::find(sessions, id, &calib::StoredSession::id));
@@ -228,8 +229,8 @@ Result<void> check_again(const CalibrateRequest& o, Board& board, Session& sessi
   return check_verdict(o.eye, change);
 }
 
-/// Before a file is made.
-Result<void> check_plan(const CalibrateRequest& o, const Board& board) {
+/// One that can be carried out before this board's display. Read once: it may come through a pipe.
+Result<calib::SessionPlan> plan_of(const CalibrateRequest& o, const Board& board) {
   calib::SessionPlan plan;
   if (o.plan) {
     TRY(need(!o.plan->empty(), "--plan", "names no file; give it one, or leave it out"));
@@ -237,8 +238,10 @@ Result<void> check_plan(const CalibrateRequest& o, const Board& board) {
   }
   TRY(calib::validate(plan));
   const std::int64_t there = TRY(calib::pattern_family(plan.family))->count(board.object.rows, board.object.cols);
-  plan.patterns = static_cast<int>(std::min<std::int64_t>(plan.patterns, there));
-  return calib::check_judged(plan);
+  calib::SessionPlan shown = plan;
+  shown.patterns = static_cast<int>(std::min<std::int64_t>(plan.patterns, there));
+  TRY(calib::check_judged(shown));
+  return plan;
 }
 
 /// One that this run has made, where no picture was ever taken.
@@ -256,12 +259,12 @@ Result<void> calibrate(const CalibrateRequest& o, Session& session) {
   TRY(light_kind(o.light, board.source.simulated()));
   TRY(need(o.scene.empty() || board.source.simulated(), "--scene", "is of a simulated display; leave it out"));
   if (o.check) return check_again(o, board, session);
-  TRY(check_plan(o, board));
+  const calib::SessionPlan plan = TRY(plan_of(o, board));
   std::optional<calib::EyeFile> file;
   Teller teller(session);
   std::error_code ignored;
   const bool there = std::filesystem::exists(o.eye, ignored);
-  auto took = taken(o, board, file, session, teller);
+  auto took = taken(o, plan, board, file, session, teller);
   if (!took && !there && file) remove_if_empty(std::move(*file));
   const calib::StoredSession done = TRY(std::move(took));
   session.end_progress();

@@ -253,6 +253,42 @@ TEST_CASE("frames of a storm of edges have no time, and are lost rather than del
   }
 }
 
+TEST_CASE("data-ready that oscillates for ever is recovered from in vain, and given up") {
+  for (const ConverterEye& eye : converter_eyes) {
+    if (!frontend::find_front_end(eye.chip)->data_ready) continue;
+    CAPTURE(eye.chip);
+    ConverterRig rig(eye, test::second);
+    REQUIRE(rig.source->start());
+    REQUIRE(rig.next());
+    rig.inject({.kind = FrontEndFaultKind::edge_storm, .value = rig.period_ns() / 50});
+    int delivered = 0;
+    bool recovering = false;
+    for (int k = 0; k < 100 && rig.last_error.code != hal::ErrorCode::disconnected; ++k) {
+      delivered += rig.next(100 * ms).has_value() ? 1 : 0;
+      recovering = recovering || rig.source->recovering();
+    }
+    CHECK(recovering);
+    CHECK(delivered < 30);  // the first edge after a restart looks like a frame's
+    CHECK(rig.last_error.code == hal::ErrorCode::disconnected);
+    CHECK_FALSE(rig.source->recovering());
+    CHECK(rig.source->failures()[ConverterFailure::silence] >= 1);
+    CHECK(rig.source->account().balanced());
+  }
+}
+
+TEST_CASE("an eye that is not to be recovered is given up at once, and says so") {
+  for (const ConverterEye& eye : converter_eyes) {
+    CAPTURE(eye.chip);
+    ConverterRig rig(eye, 0);
+    REQUIRE(rig.source->start());
+    REQUIRE(rig.next());
+    rig.inject({.kind = FrontEndFaultKind::bus_error});
+    CHECK_FALSE(rig.next());
+    CHECK(rig.last_error.code == hal::ErrorCode::disconnected);
+    CHECK_FALSE(rig.source->recovering());
+  }
+}
+
 TEST_CASE("chips of whose answers none is good are reset after three frames") {
   for (const ConverterEye& eye : converter_eyes) {
     CAPTURE(eye.chip);

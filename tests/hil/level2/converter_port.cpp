@@ -1,5 +1,6 @@
 #include "tests/hil/level2/converter_port.hpp"
 
+#include <cerrno>
 #include <chrono>
 #include <utility>
 
@@ -55,7 +56,7 @@ void ConverterPort::Bus::transfer(std::span<const hal::SpiSegment> segments) {
 /// ESHUTDOWN while the files are gone, as the kernel has it for those that are open.
 int ConverterPort::Bus::status() {
   const std::lock_guard lock(of.mutex_);
-  return of.front_end_.present(of.clock_.now_ns()) ? 0 : 108;
+  return of.front_end_.present(of.clock_.now_ns()) ? 0 : ESHUTDOWN;
 }
 
 void ConverterPort::pass_edges() {
