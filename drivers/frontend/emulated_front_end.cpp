@@ -10,22 +10,14 @@ namespace {
 constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 constexpr std::size_t bits_of_byte = 8;
 
-bool bit_of(std::span<const std::byte> bytes, std::size_t bit) {
-  return (std::to_integer<unsigned>(bytes[bit / bits_of_byte]) >> (7 - bit % bits_of_byte) & 1U) != 0;
-}
-
-void set_bit(std::span<std::byte> bytes, std::size_t bit, bool level) {
-  if (bytes.empty()) return;
-  const auto mask = static_cast<std::byte>(1U << (7 - bit % bits_of_byte));
-  std::byte& byte = bytes[bit / bits_of_byte];
-  byte = level ? byte | mask : byte & ~mask;
-}
-
 }  // namespace
 
 EmulatedFrontEnd::EmulatedFrontEnd(EmulatedFrontEndSettings settings, std::int64_t now_ns)
     : settings_(std::move(settings)), now_ns_(now_ns), host_origin_ns_(now_ns) {
   for (int chip = 0; chip < settings_.front_end.chips; ++chip) chips_.push_back(settings_.chip->emulate());
+  std::vector<ChipEmulator*> wired;
+  for (const auto& chip : chips_) wired.push_back(chip.get());
+  clocked_.emplace(std::move(wired), settings_.chip->chain ? Hookup::chain : Hookup::addressed);
   edges_.reserve(settings_.kernel_edges);
   codes_.resize(static_cast<std::size_t>(settings_.chip->channels) * chips_.size());
   power_on(now_ns);
@@ -48,6 +40,7 @@ void EmulatedFrontEnd::begin(const FrontEndFault& fault) {
     case FrontEndFaultKind::other_chip:
       impostor_ = front_ends()[static_cast<std::size_t>(fault.value)]->emulate();
       impostor_->power_on();
+      clocked_.emplace(std::vector<ChipEmulator*>{impostor_.get()}, Hookup::alone);
       return;
     case FrontEndFaultKind::gone:
       gone_until_ns_ = fault.duration_ns == 0 ? never : fault.at_ns + fault.duration_ns;
@@ -163,53 +156,27 @@ std::int64_t EmulatedFrontEnd::duration_of(std::span<const hal::SpiSegment> segm
   return static_cast<std::int64_t>(ns);
 }
 
-/// A clock to whoever is selected; what comes back. Nobody at the address: the pull-up.
-bool EmulatedFrontEnd::clock_chips(bool in) noexcept {
-  if (impostor_) return impostor_->clock(in);
-  if (!settings_.chip->chain) return selected_ >= chips_.size() || chips_[selected_]->clock(in);
-  bool level = false;  // the last one's input is tied low
-  for (auto chip = chips_.rbegin(); chip != chips_.rend(); ++chip) level = (*chip)->clock(level);
-  return level;
-}
-
-void EmulatedFrontEnd::move(const hal::SpiSegment& segment, std::size_t& bit, const Disturbance& wrong) {
-  for (std::size_t k = 0; k < segment.bytes() * bits_of_byte; ++k, ++bit) {
-    if (bit == wrong.brown_out_bit) chips_[wrong.brown_out_chip % chips_.size()]->power_on();
-    if (bit == wrong.glitch_bit) {
-      for (auto& chip : chips_) {
-        chip->release();
-        chip->select();
-      }
-    }
-    const bool out = !segment.out.empty() && bit_of(segment.out, k);
-    bool in = bit == wrong.lost_bit || clock_chips(out);
-    if (bit == wrong.doubled_bit) in = clock_chips(out);
-    if (bit == wrong.turned_bit) in = !in;
-    set_bit(segment.in, k, (in && !wrong.low) || wrong.high);
-  }
-}
-
-/// What is wrong in this exchange of so many bits; what is wrong once is then over.
-EmulatedFrontEnd::Disturbance EmulatedFrontEnd::disturbance(std::size_t bits) {
-  Disturbance wrong;
-  const auto at = [&](FrontEndFaultKind kind) {
+/// What is wrong in this exchange of so many bytes; what is wrong once is then over.
+BusFaults EmulatedFrontEnd::faults_of(std::size_t bytes) {
+  BusFaults wrong;
+  const auto at = [&](FrontEndFaultKind kind) -> std::optional<std::size_t> {
     const FrontEndFault* const fault = of_this_exchange(kind);
-    if (fault == nullptr) return Disturbance::nowhere;
-    const auto bit = static_cast<std::size_t>(fault->value) % std::max<std::size_t>(bits, 1);
+    if (fault == nullptr) return std::nullopt;
+    const auto clock = static_cast<std::size_t>(fault->value) % std::max<std::size_t>(bits_of_byte * bytes, 1);
     static_cast<void>(count_down(kind));
-    return bit;
+    return clock;
   };
-  wrong.glitch_bit = at(FrontEndFaultKind::select_glitch);
-  wrong.lost_bit = at(FrontEndFaultKind::clock_lost);
-  wrong.doubled_bit = at(FrontEndFaultKind::clock_doubled);
+  wrong.select_glitch = at(FrontEndFaultKind::select_glitch);
+  wrong.lost_clock = at(FrontEndFaultKind::clock_lost);
+  wrong.doubled_clock = at(FrontEndFaultKind::clock_doubled);
   wrong.turned_bit = at(FrontEndFaultKind::bit_error);
   if (const FrontEndFault* brown = of_this_exchange(FrontEndFaultKind::brown_out)) {
-    wrong.brown_out_chip = static_cast<std::size_t>(brown->value & 0xff);
-    wrong.brown_out_bit = static_cast<std::size_t>(brown->value >> 8) * bits_of_byte;
-    if (wrong.brown_out_bit < bits) static_cast<void>(count_down(FrontEndFaultKind::brown_out));
+    wrong.chip = static_cast<std::size_t>(brown->value & 0xff);
+    wrong.brown_out = static_cast<std::size_t>(brown->value >> 8);
+    if (*wrong.brown_out < bytes) static_cast<void>(count_down(FrontEndFaultKind::brown_out));
   }
-  wrong.low = lasting(FrontEndFaultKind::miso_low) != nullptr;
-  wrong.high = lasting(FrontEndFaultKind::miso_high) != nullptr;
+  if (lasting(FrontEndFaultKind::miso_low) != nullptr) wrong.stuck = false;
+  if (lasting(FrontEndFaultKind::miso_high) != nullptr) wrong.stuck = true;
   return wrong;
 }
 
@@ -227,25 +194,9 @@ EmulatedFrontEnd::Outcome EmulatedFrontEnd::exchange(std::span<const hal::SpiSeg
     converted_ = static_cast<std::uint64_t>(static_cast<double>(now_ns - host_origin_ns_) / period_ns());
     convert(converted_);
   }
-  std::size_t bits = 0, bit = 0;
-  for (const hal::SpiSegment& each : segments) bits += each.bytes() * bits_of_byte;
-  const Disturbance wrong = disturbance(bits);
-  bool selected = false;
-  const auto chip_select = [&](bool down) {
-    if (down == selected) return;
-    selected = down;
-    const auto move_pin = [&](ChipEmulator& chip) { down ? chip.select() : chip.release(); };
-    if (impostor_) return move_pin(*impostor_);
-    for (std::size_t chip = 0; chip < chips_.size(); ++chip) {
-      if (settings_.chip->chain || chip == selected_) move_pin(*chips_[chip]);
-    }
-  };
-  for (const hal::SpiSegment& each : segments) {
-    chip_select(true);
-    move(each, bit, wrong);
-    if (each.release) chip_select(false);
-  }
-  chip_select(false);
+  std::size_t bytes = 0, clocks = 0;
+  for (const hal::SpiSegment& each : segments) bytes += each.bytes();
+  clocked_->exchange(segments, selected_, faults_of(bytes), clocks);
   static_cast<void>(count_down(FrontEndFaultKind::slow_bus));
   return count_down(FrontEndFaultKind::answer_lost) ? Outcome::failed : Outcome::done;
 }
@@ -254,13 +205,7 @@ EmulatedFrontEnd::Outcome EmulatedFrontEnd::exchange_settings(std::span<const ha
                                                               std::int64_t now_ns) {
   advance(now_ns);
   if (gone_until_ns_ != 0) return Outcome::gone;
-  for (const hal::SpiSegment& each : segments) {
-    for (std::size_t k = 0; k < each.bytes() * bits_of_byte; ++k) {
-      const bool out = !each.out.empty() && bit_of(each.out, k);
-      for (auto& chip : chips_) chip->settings_clock(out);
-      set_bit(each.in, k, true);
-    }
-  }
+  clocked_->exchange_settings(segments);
   return Outcome::done;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/frontend/chip_emulator.hpp"
+#include "drivers/frontend/clocked_chips.hpp"
 #include "drivers/frontend/front_end.hpp"
 #include "drivers/frontend/front_end_faults.hpp"
 
@@ -58,23 +59,13 @@ class EmulatedFrontEnd {
   [[nodiscard]] const EmulatedFrontEndSettings& settings() const noexcept { return settings_; }
 
  private:
-  /// What is wrong in an exchange, at which bit of it.
-  struct Disturbance {
-    static constexpr auto nowhere = static_cast<std::size_t>(-1);
-    std::size_t glitch_bit = nowhere, lost_bit = nowhere, doubled_bit = nowhere, turned_bit = nowhere;
-    std::size_t brown_out_bit = nowhere, brown_out_chip = 0;
-    bool low = false, high = false;
-  };
-
   void advance(std::int64_t now_ns);
   void begin(const FrontEndFault& fault);
   void convert(std::uint64_t index);
   void edge(std::int64_t t_ns, bool queued);
   void power_on(std::int64_t now_ns);
   [[nodiscard]] double period_ns() const noexcept;
-  [[nodiscard]] bool clock_chips(bool in) noexcept;
-  void move(const hal::SpiSegment& segment, std::size_t& bit, const Disturbance& wrong);
-  [[nodiscard]] Disturbance disturbance(std::size_t bits);
+  [[nodiscard]] BusFaults faults_of(std::size_t bytes);
   [[nodiscard]] const FrontEndFault* of_this_exchange(FrontEndFaultKind kind) const noexcept;
   [[nodiscard]] bool count_down(FrontEndFaultKind kind) noexcept;
   [[nodiscard]] const FrontEndFault* lasting(FrontEndFaultKind kind) const noexcept;
@@ -82,6 +73,7 @@ class EmulatedFrontEnd {
   EmulatedFrontEndSettings settings_;
   std::vector<std::unique_ptr<ChipEmulator>> chips_;
   std::unique_ptr<ChipEmulator> impostor_;
+  std::optional<ClockedChips> clocked_;  // never empty
   std::uint32_t selected_ = 0;
   bool reset_high_ = true;
   std::vector<std::int32_t> codes_;

@@ -1,6 +1,5 @@
 #include "tests/hil/spi_shim.hpp"
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/types.h>
@@ -11,6 +10,8 @@
 #include <cstdarg>
 #include <mutex>
 #include <vector>
+
+#include "tests/hil/behind_shim.hpp"
 
 namespace compueye::hil {
 namespace {
@@ -26,11 +27,6 @@ struct SpiShim {
 SpiShim& spi_shim() {
   static SpiShim one;
   return one;
-}
-
-template <class Function>
-Function behind_shim(const char* name) {
-  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
 
 /// The model behind a file, or nothing.
@@ -83,13 +79,11 @@ extern "C" {
 
 int open(const char* path, int flags, ...) {
   if (is_shimmed(path)) return open_shimmed(flags);
-  static const auto real = behind_shim<int (*)(const char*, int, ...)>("open");
-  if ((flags & O_CREAT) == 0) return real(path, flags);
   va_list arguments;
   va_start(arguments, flags);
-  const mode_t mode = va_arg(arguments, mode_t);
+  const int file = open_behind_shim(path, flags, arguments);
   va_end(arguments);
-  return real(path, flags, mode);
+  return file;
 }
 
 int ioctl(int fd, unsigned long request, ...) noexcept {

@@ -1,6 +1,5 @@
 #include "tests/hil/usbfs_shim.hpp"
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/eventfd.h>
 #include <sys/ioctl.h>
@@ -13,6 +12,8 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
+
+#include "tests/hil/behind_shim.hpp"
 
 namespace compueye::hil {
 namespace {
@@ -53,11 +54,6 @@ Shim& shim() {
   return one;
 }
 
-template <class Function>
-Function next(const char* name) {
-  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
-}
-
 int open_device() {
   if (const int error = shim().open_error; error != 0) {
     errno = error;
@@ -89,20 +85,19 @@ void refresh_shim() {
 
 }  // namespace compueye::hil
 
-using compueye::hil::next;
+using compueye::hil::behind_shim;
+using compueye::hil::open_behind_shim;
 using compueye::hil::shim;
 
 extern "C" {
 
 int open(const char* path, int flags, ...) {
   if (shim().file != nullptr && shim().path == path) return compueye::hil::open_device();
-  static const auto real = next<int (*)(const char*, int, ...)>("open");
-  if ((flags & O_CREAT) == 0) return real(path, flags);
   va_list arguments;
   va_start(arguments, flags);
-  const mode_t mode = va_arg(arguments, mode_t);
+  const int file = open_behind_shim(path, flags, arguments);
   va_end(arguments);
-  return real(path, flags, mode);
+  return file;
 }
 
 /// What open() is called in a library built with _FORTIFY_SOURCE, as Debian's are.
@@ -121,7 +116,7 @@ int ioctl(int fd, unsigned long request, ...) noexcept {
     if (answer.result < 0) errno = answer.error;
     return answer.result;
   }
-  static const auto real = next<int (*)(int, unsigned long, ...)>("ioctl");
+  static const auto real = behind_shim<int (*)(int, unsigned long, ...)>("ioctl");
   return real(fd, request, argument);
 }
 
@@ -130,7 +125,7 @@ int close(int fd) {
     const std::lock_guard lock(shim().closing);
     shim().fd = -1;
   }
-  static const auto real = next<int (*)(int)>("close");
+  static const auto real = behind_shim<int (*)(int)>("close");
   return real(fd);
 }
 }

@@ -67,7 +67,7 @@ struct ChipBench {
     for (std::size_t c = 0; c < chips.size(); ++c) chips[c]->convert(std::span(converted).subspan(c * each, each));
   }
 
-  FrameReport read(const BitFaults& faults = {}) {
+  FrameReport read(const BusFaults& faults = {}) {
     bus.arm(faults);
     for (const Exchange& exchange : front_end->frame()) {
       REQUIRE(select.set(exchange.select).has_value());

@@ -71,8 +71,8 @@ TEST_CASE("decoding does not use the heap, whatever came") {
     ChipBench bench(*row, of_every_chip(2));
     bench.configure();
     bench.convert(4096 >> (20 - std::min(20, row->bits)));
-    const BitFaults faults[] = {{}, {.lost_clock = 9}, {.stuck = false}, {.stuck = true}};
-    for (const BitFaults& fault : faults) {
+    const BusFaults faults[] = {{}, {.lost_clock = 9}, {.stuck = false}, {.stuck = true}};
+    for (const BusFaults& fault : faults) {
       bench.read(fault);
       const auto before = compueye::tests::heap_use_of_this_thread();
       const FrameReport report = bench.front_end->decode(bench.codes, bench.valid);
