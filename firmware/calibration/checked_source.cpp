@@ -72,10 +72,11 @@ Result<hal::SampleBlock> CheckedSource::do_read(std::int64_t deadline_ns) {
   }
 }
 
-/// What was lost between two frames of a check is the check's as they are.
+/// What was lost from its beginning to its last frame is the check's, as its frames are.
 void CheckedSource::book(bool of_check) noexcept {
   const hal::FrameAccount now = source_.account();
   if (of_check && was_of_check_) {
+    checked_ += now.total_dropped() - booked_.total_dropped();
     for (std::size_t k = 0; k < now.dropped.size(); ++k) of_checks_.dropped[k] += now.dropped[k] - booked_.dropped[k];
     of_checks_.estimated += now.estimated - booked_.estimated;
   }
@@ -106,6 +107,7 @@ void CheckedSource::pass_time(const hal::SampleBlock& block) noexcept {
 
 void CheckedSource::begin() {
   checking_ = true;
+  was_of_check_ = true;  // its first picture takes its time, too
   again_ = false;
   const hal::SourceDescription& eye = source_.describe();
   passed_ns_ = 0;
@@ -189,11 +191,13 @@ Result<void> CheckedSource::put_out(std::int64_t now_ns) {
 }
 
 void CheckedSource::do_stop() noexcept {
+  const bool of_check = machine_ || light_ != nullptr;
   machine_.reset();
   // The eye is left; there is nobody to tell of a lamp that stays lit.
   if (light_ != nullptr) static_cast<void>(light_->off());
   light_.reset();
   source_.stop();
+  book(of_check);  // now that the source has counted all
 }
 
 hal::FrameAccount CheckedSource::do_account() const noexcept {

@@ -33,11 +33,15 @@ using compueye::test::second;
 /// A light that tells when it was taken away, and that may be stuck.
 class LeavingLight final : public hal::Illuminator {
  public:
-  LeavingLight(sim::SimulatedEye& eye, hal::Clock& clock, std::int64_t& gone_ns, const std::function<bool()>& stuck)
-      : light_(eye, clock), clock_(clock), gone_ns_(gone_ns), stuck_(stuck) {}
+  LeavingLight(sim::SimulatedEye& eye, hal::Clock& clock, std::int64_t& gone_ns, const std::function<bool()>& stuck,
+               std::int64_t takes_ns)
+      : light_(eye, clock), clock_(clock), gone_ns_(gone_ns), stuck_(stuck), takes_ns_(takes_ns) {}
   ~LeavingLight() override { gone_ns_ = clock_.now_ns(); }
   [[nodiscard]] const hal::IlluminatorDescription& describe() const noexcept override { return light_.describe(); }
-  [[nodiscard]] hal::Result<std::int64_t> show(std::span<const float> picture) override { return light_.show(picture); }
+  [[nodiscard]] hal::Result<std::int64_t> show(std::span<const float> picture) override {
+    clock_.sleep_until_ns(clock_.now_ns() + takes_ns_);
+    return light_.show(picture);
+  }
   [[nodiscard]] hal::Result<std::int64_t> off() override {
     return stuck_() ? hal::fail(hal::ErrorCode::io, "lamp", "does not answer") : light_.off();
   }
@@ -47,6 +51,7 @@ class LeavingLight final : public hal::Illuminator {
   hal::Clock& clock_;
   std::int64_t& gone_ns_;
   const std::function<bool()>& stuck_;
+  std::int64_t takes_ns_;  // to show a picture
 };
 
 /// A board's eye before a scene, which the display of its session covers for checks, read in virtual time.
@@ -60,6 +65,7 @@ struct Running {
   std::vector<std::string> told;
   std::uint64_t delivered = 0;
   std::int64_t gone_ns = -second;  // of the last check's light
+  std::int64_t show_ns = 0;        // that it takes to show a picture
   std::vector<std::int64_t> looked_ns;
   std::vector<double> means;  // of the frames that were delivered
   std::function<bool()> enough = [] { return false; }, stuck = enough;
@@ -77,7 +83,7 @@ struct Running {
     checks.plan = diary.check().plan();
     checks.schedule = diary.check().schedule(around);
     checks.light = [this]() -> hal::Result<std::unique_ptr<hal::Illuminator>> {
-      return std::make_unique<LeavingLight>(*eye, clock, gone_ns, stuck);
+      return std::make_unique<LeavingLight>(*eye, clock, gone_ns, stuck, show_ns);
     };
     source = std::make_unique<CheckedSource>(std::move(checks), *changed, clock);
   }
@@ -140,6 +146,18 @@ TEST_CASE("an eye that is as it was is looked at again and again, and no frame o
   CHECK(eye.source->account().checked > 100);
   // Before a black scene white would be seen from far.
   CHECK(*std::max_element(eye.means.begin(), eye.means.end()) < eye.board.sensor.dark_level_lsb + 3.0);
+}
+
+TEST_CASE("frames that are lost while a light shows its pictures are the check's, and no drops") {
+  Running eye(14, Around::dark);
+  eye.show_ns = second / 4;
+  eye.run(6 * second);
+  eye.source->stop();
+  CHECK(eye.diary.looks() >= 1);
+  const std::uint64_t stopped = eye.source->account().drops(hal::DropReason::stopped);
+  CHECK(eye.changed->account().total_dropped() > stopped + 20);
+  CHECK(eye.source->account().total_dropped() == stopped);
+  CHECK(eye.source->account().checked >= eye.changed->account().total_dropped() - stopped);
 }
 
 TEST_CASE("a gain that changes by 1 % while the eye runs is told once, and once more when it is back") {
