@@ -58,18 +58,8 @@ void set(firmware::OptionList& options, const std::string& name, const std::stri
   }
 }
 
-}  // namespace
-
-TEST_CASE("program: an eye on USB is calibrated before a display, and run exposes as it was measured") {
-  HIL_TESTBED(testbed);
-  const compueye::test::VirtualScreen screen;
-  if (!screen.missing().empty()) {
-    std::cout << "SKIPPED: " << screen.missing() << '\n';
-    return;
-  }
-  LitEye eye(2.5);
-  eye.noise_lsb = 1.0;
-  eye.light = [&](std::size_t n) { return screen.level_of_square(n, 8, 8) / 255.0; };
+/// Calibrates the eye by `light` through the program, runs it as it was measured, and once more under checks.
+void check_calibrated(Testbed& testbed, LitEye& eye, const std::string& light) {
   UsbPort usb(testbed, LitEye::settings(protocol::usb_bus), eye.samples());
   usb.plug();
   wait_for_boot(usb);
@@ -84,7 +74,7 @@ TEST_CASE("program: an eye on USB is calibrated before a display, and run expose
   set(options, "--board", board);
   set(options, "--eye", file);
   set(options, "--plan", (folder.path() / "p.toml").string());
-  set(options, "--light", "display");
+  set(options, "--light", light);
   firmware::Session session;
   const auto done = calibrate(session);
   REQUIRE_MESSAGE(done.has_value(), done.error().text());
@@ -118,7 +108,7 @@ TEST_CASE("program: an eye on USB is calibrated before a display, and run expose
   CHECK(exposed == static_cast<std::uint32_t>(std::llround(exposure_s * 1e9)));
 
   run.check_every_s = 0.2;
-  run.light.kind = "display";
+  run.light.kind = light;
   run.frames = 80;
   hal::Result<void> checked;
   for (int tries = 0; tries < 5; ++tries) {  // umockdev on a busy machine: an eye may not answer in its two seconds
@@ -136,6 +126,28 @@ TEST_CASE("program: an eye on USB is calibrated before a display, and run expose
   CHECK(report["checks"]["changes"].get<int>() == 0);
   CHECK(report["frames"]["checked"].get<int>() > 10);
   CHECK(report["frames"]["balanced"].get<bool>());
+}
+
+}  // namespace
+
+TEST_CASE("program: an eye on USB is calibrated before a display, runs exposed as it was measured, and is checked") {
+  HIL_TESTBED(testbed);
+  const compueye::test::VirtualScreen screen;
+  if (!screen.missing().empty()) {
+    std::cout << "SKIPPED: " << screen.missing() << '\n';
+    return;
+  }
+  LitEye eye(2.5);
+  eye.noise_lsb = 1.0;
+  eye.light = [&](std::size_t n) { return screen.level_of_square(n, 8, 8) / 255.0; };
+  check_calibrated(testbed, eye, "display");
+}
+
+TEST_CASE("program: the same before the lamps of its own device") {
+  HIL_TESTBED(testbed);
+  LitEye eye(2.5);
+  eye.noise_lsb = 1.0;
+  check_calibrated(testbed, eye, "device");
 }
 
 }  // namespace compueye::hil
