@@ -49,6 +49,15 @@ TEST_CASE("quoted text is short, visible and never cut inside a character") {
   CHECK(excerpt("", 0).empty());
   CHECK(visible_text(std::string_view("\0\r", 2)) == "\\x00\\r");
   CHECK(display_width("2 \xc2\xb5m") == 4);
+  // RFC 3629: whole code points stay, and nothing else does.
+  const std::string whole = "a\xc3\xa4\xe2\x82\xac\xf0\x9f\x91\x81", no_part = "\xef\xbf\xbd";
+  CHECK(valid_utf8(whole) == whole);
+  for (const char* each :
+       {"\xff", "\x80", "\xc3", "\xc0\x80", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82"}) {
+    std::string expected;
+    for (std::size_t k = 0; k < std::string_view(each).size(); ++k) expected += no_part;
+    CHECK(valid_utf8(each + whole) == expected + whole);
+  }
 }
 
 TEST_CASE("numbers for people") {

@@ -178,7 +178,7 @@ TEST_CASE("a page tells an error budget that the estimate holds") {
 
 TEST_CASE("whatever words a file holds are text on its page") {
   PageData data = known_data();
-  const std::string hostile = "<script>alert('1')</script>\x1b[2J\" onload=\"x\n&amp;";
+  const std::string hostile = "<script>alert('1')</script>\x1b[2J\" onload=\"x\n&amp;\xff";
   data.eye.serial = data.file = hostile;
   data.newest->estimate.method = data.newest->estimate.program = hostile;
   data.newest->estimate.sensor = {{hostile, 1.0}};
@@ -192,6 +192,8 @@ TEST_CASE("whatever words a file holds are text on its page") {
   check_complete(page);
   CHECK(count(page, "\x1b") == 0);
   CHECK(count(page, "onload=\"") == 0);
+  CHECK(count(page, "\xff") == 0);
+  CHECK(count(page, "\xef\xbf\xbd") >= 10);
   CHECK(count(page, "&lt;script&gt;alert(&#39;1&#39;)&lt;/script&gt;") >= 10);
   CHECK(count(page, "&amp;amp;") >= 10);
 }

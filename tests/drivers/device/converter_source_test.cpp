@@ -6,11 +6,9 @@
 #include <cstdlib>
 #include <memory>
 #include <random>
-#include <set>
 #include <string>
 
 #include "tests/drivers/device/converter_rig.hpp"
-#include "tests/hal/error_check.hpp"
 #include "tests/hal/sample_source_contract.hpp"
 #include "tests/memory/allocation_counter.hpp"
 
@@ -253,42 +251,6 @@ TEST_CASE("frames of a storm of edges have no time, and are lost rather than del
   }
 }
 
-TEST_CASE("data-ready that oscillates for ever is recovered from in vain, and given up") {
-  for (const ConverterEye& eye : converter_eyes) {
-    if (!frontend::find_front_end(eye.chip)->data_ready) continue;
-    CAPTURE(eye.chip);
-    ConverterRig rig(eye, test::second);
-    REQUIRE(rig.source->start());
-    REQUIRE(rig.next());
-    rig.inject({.kind = FrontEndFaultKind::edge_storm, .value = rig.period_ns() / 50});
-    int delivered = 0;
-    bool recovering = false;
-    for (int k = 0; k < 100 && rig.last_error.code != hal::ErrorCode::disconnected; ++k) {
-      delivered += rig.next(100 * ms).has_value() ? 1 : 0;
-      recovering = recovering || rig.source->recovering();
-    }
-    CHECK(recovering);
-    CHECK(delivered < 30);  // the first edge after a restart looks like a frame's
-    CHECK(rig.last_error.code == hal::ErrorCode::disconnected);
-    CHECK_FALSE(rig.source->recovering());
-    CHECK(rig.source->failures()[ConverterFailure::silence] >= 1);
-    CHECK(rig.source->account().balanced());
-  }
-}
-
-TEST_CASE("an eye that is not to be recovered is given up at once, and says so") {
-  for (const ConverterEye& eye : converter_eyes) {
-    CAPTURE(eye.chip);
-    ConverterRig rig(eye, 0);
-    REQUIRE(rig.source->start());
-    REQUIRE(rig.next());
-    rig.inject({.kind = FrontEndFaultKind::bus_error});
-    CHECK_FALSE(rig.next());
-    CHECK(rig.last_error.code == hal::ErrorCode::disconnected);
-    CHECK_FALSE(rig.source->recovering());
-  }
-}
-
 TEST_CASE("chips of whose answers none is good are reset after three frames") {
   for (const ConverterEye& eye : converter_eyes) {
     CAPTURE(eye.chip);
@@ -322,53 +284,6 @@ TEST_CASE("a reader that comes late gets the newest conversion, and what it miss
     CHECK(after->frame == *second - *first);
     CHECK(after->flags.overrun);
     CHECK(rig.source->account().drops(hal::DropReason::device_overrun) == after->frame - 1);
-  }
-}
-
-TEST_CASE("files that are gone for good, and a chip of another kind, end in a sentence") {
-  for (const ConverterEye& eye : converter_eyes) {
-    CAPTURE(eye.chip);
-    {
-      ConverterRig rig(eye, 2 * test::second);
-      REQUIRE(rig.source->start());
-      REQUIRE(rig.next());
-      rig.inject({.kind = FrontEndFaultKind::gone});
-      CHECK_FALSE(rig.next());
-      CHECK(rig.source->recovering());
-      for (int k = 0; k < 10 && rig.last_error.code == hal::ErrorCode::timeout; ++k) CHECK_FALSE(rig.next());
-      test::check_error(hal::Result<void>(tl::unexpected(rig.last_error)), hal::ErrorCode::disconnected, "CE-SPI", {});
-      CHECK(rig.source->failures()[ConverterFailure::gave_up] == 1);
-      CHECK(rig.source->failures()[ConverterFailure::absent] > 2);
-    }
-    for (std::size_t other = 0; other < frontend::front_ends().size(); ++other) {
-      if (frontend::front_ends()[other]->name == eye.chip) continue;
-      CAPTURE(std::string(frontend::front_ends()[other]->name));
-      hal::VirtualClock clock;
-      frontend::EmulatedFrontEnd chips(emulated(eye), clock.now_ns());
-      chips.inject({.kind = FrontEndFaultKind::other_chip, .value = static_cast<std::int64_t>(other)});
-      const auto made = ConverterSource::create(source_of(chips), wires_of(chips, clock), clock);
-      REQUIRE_FALSE(made);
-      CHECK(made.error().code == hal::ErrorCode::mismatch);
-    }
-  }
-}
-
-TEST_CASE("converters are refused wires that they cannot do without") {
-  for (const ConverterEye& eye : converter_eyes) {
-    CAPTURE(eye.chip);
-    hal::VirtualClock clock;
-    frontend::EmulatedFrontEnd chips(emulated(eye), clock.now_ns());
-    const frontend::FrontEndRow& chip = *chips.settings().chip;
-    const auto refused = [&](auto&& without) {
-      ConverterWires wires = wires_of(chips, clock);
-      without(wires);
-      const auto made = ConverterSource::create(source_of(chips), std::move(wires), clock);
-      return !made && made.error().code == hal::ErrorCode::usage;
-    };
-    CHECK(refused([](ConverterWires& wires) { wires.data.reset(); }));
-    CHECK(refused([](ConverterWires& wires) { wires.ready.reset(); }) == chip.data_ready);
-    CHECK(refused([](ConverterWires& wires) { wires.settings.reset(); }) == chip.settings_bus);
-    CHECK(refused([](ConverterWires& wires) { wires.select.reset(); }) == !chip.chain);
   }
 }
 
