@@ -8,6 +8,7 @@ namespace compueye::hil {
 namespace {
 
 constexpr int ready_line = 0, select_line = 1, select_lines = 3, reset_line = 4;
+// How late the emulated interrupt may be; its edge has the time of the conversion all the same.
 constexpr auto edge_pause = std::chrono::microseconds(200);
 
 std::vector<EmulatedGpiochip::Line> named_lines() {
