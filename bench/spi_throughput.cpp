@@ -159,21 +159,35 @@ hal::Result<Run> run(bool paced) {
   return Run{used_s / wall_s, frames / wall_s, 1e6 * used_s / frames, dropped};
 }
 
+/// Nobody but the timer: what a core takes to be woken so often.
+hal::Result<Run> run_timer() {
+  hal::MonotonicClock clock;
+  TimerEdges timer(clock, true);
+  TRY(timer.open());
+  const double cpu_s = thread_cpu_s();
+  const std::int64_t begin_ns = clock.now_ns();
+  for (int k = 0; k < paced_frames; ++k) TRY(timer.wait(clock.now_ns() + 1'000'000'000));
+  const double wall_s = static_cast<double>(clock.now_ns() - begin_ns) * 1e-9, used_s = thread_cpu_s() - cpu_s;
+  return Run{used_s / wall_s, paced_frames / wall_s, 1e6 * used_s / paced_frames, 0};
+}
+
 struct Measured {
-  Run paced, free;
+  Run timer, paced, free;
 };
 
-hal::Result<Run> middle(bool paced) {
+template <class OneRun>
+hal::Result<Run> middle(OneRun&& one_run) {
   std::vector<Run> all;
-  for (int k = 0; k < runs; ++k) all.push_back(TRY(run(paced)));
+  for (int k = 0; k < runs; ++k) all.push_back(TRY(one_run()));
   std::ranges::sort(all, {}, &Run::microseconds);
   return all[runs / 2];
 }
 
 hal::Result<Measured> measure() {
   Measured measured;
-  measured.paced = TRY(middle(true));
-  measured.free = TRY(middle(false));
+  measured.timer = TRY(middle(run_timer));
+  measured.paced = TRY(middle([] { return run(true); }));
+  measured.free = TRY(middle([] { return run(false); }));
   return measured;
 }
 
@@ -187,7 +201,8 @@ std::string text_of(const Measured& m) {
     table.add({name, fmt::format("{:.0f}", each.frames_per_second), fmt::format("{:.2f}", each.microseconds),
                fmt::format("{:.1f}", 100.0 * each.share), fmt::format("{}", each.dropped)});
   };
-  add("at 6000 frames/s, by a timer", m.paced);
+  add("the timer alone", m.timer);
+  add("at 6000 frames/s, by the timer", m.paced);
   add("as fast as it goes", m.free);
   return fmt::format("median of {} runs; target: 20 % of a core at 6000 frames/s. spidev's own work is not in it\n\n{}",
                      runs, table.text());
@@ -195,7 +210,8 @@ std::string text_of(const Measured& m) {
 
 std::string json_of(const Measured& m) {
   bench::Json json;
-  for (const auto& [name, each] : {std::pair{"paced", m.paced}, std::pair{"free", m.free}}) {
+  for (const auto& [name, each] :
+       {std::pair{"timer", m.timer}, std::pair{"paced", m.paced}, std::pair{"free", m.free}}) {
     json[name] = {{"frames_per_second", each.frames_per_second},
                   {"us_a_frame", each.microseconds},
                   {"share_of_a_core", each.share},
