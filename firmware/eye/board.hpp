@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/realtime/realtime_settings.hpp"
+#include "firmware/supervisor/health_limits.hpp"
 #include "hal/build_settings.hpp"
 #include "hal/detector_settings.hpp"
 #include "hal/eye_geometry.hpp"
@@ -64,6 +66,8 @@ struct Board {
   std::optional<double> sigma;   ///< noise of one sample in units of y, >= 0; absent: as the sensor's figures give
   bool find_dead = true;         ///< run looks for channels that nobody has told to be dead
   SceneSettings scene;
+  RealtimeSettings realtime;
+  HealthLimits health;
 
   std::string folder;  ///< where board.toml lies; files belonging to the board go beside it
   std::string file;    ///< board.toml as errors name it
