@@ -1,6 +1,6 @@
 #include "tests/hil/level3/cuse_spidev.hpp"
 
-#define FUSE_USE_VERSION 35
+#define FUSE_USE_VERSION 31
 #include <cuse_lowlevel.h>
 #include <linux/spi/spidev.h>
 #include <sys/ioctl.h>
@@ -80,8 +80,9 @@ void message(fuse_req_t request, unsigned command, void* argument, std::span<con
   reply(request, self_of(request).file().ioctl(command, transfers.data()), received);
 }
 
-void on_ioctl(fuse_req_t request, unsigned command, void* argument, fuse_file_info*, unsigned, const void* in_buffer,
+void on_ioctl(fuse_req_t request, int code, void* argument, fuse_file_info*, unsigned, const void* in_buffer,
               std::size_t in_bytes, std::size_t out_bytes) {
+  const auto command = static_cast<unsigned>(code);
   const std::span in(static_cast<const std::byte*>(in_buffer), in_bytes);
   const bool writes = _IOC_DIR(command) == _IOC_WRITE;
   if (_IOC_TYPE(command) == SPI_IOC_MAGIC && _IOC_NR(command) == 0 && writes) {
