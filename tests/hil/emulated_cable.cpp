@@ -15,7 +15,16 @@ constexpr std::uint8_t product_string = 2, serial_string = 3;
 constexpr std::uint8_t bulk_in_address = 0x81;
 constexpr std::uint16_t high_speed_packet = 512;
 
-UsbDeviceModel::Transfer transfer_of(DeviceEmulator::Transfer transfer) {
+std::byte low(unsigned value) {
+  return static_cast<std::byte>(value & 0xFFU);
+}
+std::byte high(unsigned value) {
+  return static_cast<std::byte>(value >> 8U & 0xFFU);
+}
+
+}  // namespace
+
+UsbDeviceModel::Transfer usb_transfer_of(DeviceEmulator::Transfer transfer) {
   using Outcome = UsbDeviceModel::Outcome;
   switch (transfer.outcome) {
     case DeviceEmulator::Outcome::done:
@@ -30,14 +39,18 @@ UsbDeviceModel::Transfer transfer_of(DeviceEmulator::Transfer transfer) {
   return {Outcome::gone, 0};
 }
 
-std::byte low(unsigned value) {
-  return static_cast<std::byte>(value & 0xFFU);
+std::vector<std::uint8_t> usb_string_descriptor(unsigned index, const std::string& serial) {
+  std::vector<std::uint8_t> bytes{0, USB_DT_STRING};
+  const std::string text = index == product_string ? "emulated eye" : index == serial_string ? serial : "";
+  if (index == 0) {
+    bytes.insert(bytes.end(), {0x09, 0x04});  // US English
+  } else if (text.empty()) {
+    return {};
+  }
+  for (const char c : text) bytes.insert(bytes.end(), {static_cast<std::uint8_t>(c), 0});
+  bytes[0] = static_cast<std::uint8_t>(bytes.size());
+  return bytes;
 }
-std::byte high(unsigned value) {
-  return static_cast<std::byte>(value >> 8U & 0xFFU);
-}
-
-}  // namespace
 
 template <class Use>
 UsbDeviceModel::Transfer EmulatedUsbEye::when_there(Use&& use) {
@@ -50,11 +63,11 @@ UsbDeviceModel::Transfer EmulatedUsbEye::when_there(Use&& use) {
 UsbDeviceModel::Transfer EmulatedUsbEye::control(const Setup& setup, std::span<std::byte> data) {
   if ((setup.type & USB_TYPE_MASK) == USB_TYPE_STANDARD) return standard(setup, data);
   return when_there([&](DeviceEmulator& device, std::int64_t now_ns) {
-    if ((setup.type & USB_DIR_IN) == 0) return transfer_of(device.control(now_ns, setup.request, data, {}));
+    if ((setup.type & USB_DIR_IN) == 0) return usb_transfer_of(device.control(now_ns, setup.request, data, {}));
     const std::array payload{low(setup.value), high(setup.value), low(setup.index), high(setup.index)};
     const auto request = static_cast<Request>(setup.request);
     const bool has_payload = request == Request::get_desc || request == Request::ping;
-    return transfer_of(device.control(
+    return usb_transfer_of(device.control(
         now_ns, setup.request, std::span<const std::byte>(payload).first(has_payload ? payload.size() : 0), data));
   });
 }
@@ -68,24 +81,17 @@ UsbDeviceModel::Transfer EmulatedUsbEye::standard(const Setup& setup, std::span<
     std::array<std::byte, protocol::PingReply::bytes> reply{};
     const auto ping = device.control(now_ns, protocol::number(Request::ping), nonce, reply);
     if (ping.outcome == DeviceEmulator::Outcome::nothing) return {};
-    std::vector<std::byte> bytes{std::byte{0}, std::byte{USB_DT_STRING}};
-    const std::string text = index == product_string ? "emulated eye" : index == serial_string ? device.serial() : "";
-    if (index == 0) {
-      bytes.insert(bytes.end(), {std::byte{0x09}, std::byte{0x04}});  // US English
-    } else if (text.empty()) {
-      return {Outcome::stalled, 0};
-    }
-    for (const char c : text) bytes.insert(bytes.end(), {static_cast<std::byte>(c), std::byte{0}});
-    bytes[0] = static_cast<std::byte>(bytes.size());
+    const auto bytes = usb_string_descriptor(index, device.serial());
+    if (bytes.empty()) return {Outcome::stalled, 0};
     const std::size_t count = std::min(bytes.size(), data.size());
-    std::copy_n(bytes.begin(), count, data.begin());
+    for (std::size_t k = 0; k < count; ++k) data[k] = std::byte{bytes[k]};
     return {Outcome::done, count};
   });
 }
 
 UsbDeviceModel::Transfer EmulatedUsbEye::read(std::span<std::byte> into) {
   return when_there(
-      [&](DeviceEmulator& device, std::int64_t now_ns) { return transfer_of(device.read(now_ns, into)); });
+      [&](DeviceEmulator& device, std::int64_t now_ns) { return usb_transfer_of(device.read(now_ns, into)); });
 }
 
 void EmulatedUsbEye::reset() {

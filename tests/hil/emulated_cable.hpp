@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "drivers/protocol/device_emulator.hpp"
 #include "hal/clock.hpp"
@@ -93,6 +94,11 @@ class EmulatedUsbEye final : public UsbDeviceModel {
   EmulatedCable& cable_;
   std::uint64_t attachment_;
 };
+
+[[nodiscard]] UsbDeviceModel::Transfer usb_transfer_of(protocol::DeviceEmulator::Transfer transfer);
+
+/// String descriptor `index` of an eye, empty where it has none: 2 its product, 3 its serial.
+[[nodiscard]] std::vector<std::uint8_t> usb_string_descriptor(unsigned index, const std::string& serial);
 
 /// Device, configuration, interface and endpoint descriptor as they lie in sysfs.
 [[nodiscard]] std::vector<std::uint8_t> usb_descriptors(std::uint16_t vendor, std::uint16_t product);

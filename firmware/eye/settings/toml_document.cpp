@@ -93,7 +93,7 @@ std::string written_number(std::string_view text, const toml::node& node) {
   if (!node.is_number() || begin.line != end.line) return {};
   for (toml::source_index line = 1; line < begin.line; ++line) text.remove_prefix(text.find('\n') + 1);
   text = text.substr(0, text.find('\n'));
-  const bool plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= 0; });
+  const bool plain = std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; });
   if (!plain || begin.column < 1 || end.column <= begin.column || end.column - 1 > text.size()) return {};
   return std::string(text.substr(begin.column - 1, end.column - begin.column));
 }
