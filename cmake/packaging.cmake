@@ -38,13 +38,14 @@ set(CPACK_PACKAGE_NAME compueye)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "COMPU-EYE maintainers <maintainers@compueye.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "runtime of a computational compound eye")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "A compound eye is an array of photodiodes on a dome, each of which sees much wider
-than the angle to its neighbour. This runtime reads the eye (USB, HID, SPI or
-simulated), corrects its overlapping samples and solves for the picture, frame
-by frame, in memory and time that are fixed before the first frame.
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "A compound eye is an array of photodiodes on a dome, each of which
+sees much wider than the angle to its neighbour. This runtime reads
+the eye (USB, HID, SPI or simulated), corrects its overlapping samples
+and solves for the picture, frame by frame, in memory and time that
+are fixed before the first frame.
 .
-It contains the command line, boards, scenes and the rules by which the members
-of group compueye may open an eye.")
+It contains the command line, boards, scenes and the rules by which
+the members of group compueye may open an eye.")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)

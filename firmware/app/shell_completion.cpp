@@ -36,9 +36,9 @@ complete -F _compueye compueye
 std::string offer(const Option& option) {
   constexpr std::string_view words = "mapfile -t COMPREPLY < <(compgen -W \"{}\" -- \"$current\")";
   constexpr std::string_view folders =
-      "compopt -o filenames 2>/dev/null && mapfile -O ${#COMPREPLY[@]} -t COMPREPLY < <(compgen -d -- \"$current\")";
+      "compopt -o filenames 2>/dev/null; mapfile -O ${#COMPREPLY[@]} -t COMPREPLY < <(compgen -d -- \"$current\")";
   constexpr std::string_view files =
-      "compopt -o filenames 2>/dev/null && mapfile -O ${#COMPREPLY[@]} -t COMPREPLY < <(compgen -f -- \"$current\")";
+      "compopt -o filenames 2>/dev/null; mapfile -O ${#COMPREPLY[@]} -t COMPREPLY < <(compgen -f -- \"$current\")";
   const auto asked = [&](std::string_view what) {
     return fmt::format(fmt::runtime(words), fmt::format("$(\"$program\" completion {} 2>/dev/null)", what));
   };
