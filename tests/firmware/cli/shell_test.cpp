@@ -64,6 +64,7 @@ std::string plain(const std::string& page) {
   std::string text;
   for (std::size_t i = 0; i < page.size(); ++i) {
     if (page[i] == '\\' && i + 1 < page.size() && page[i + 1] == '-') continue;
+    if (page.compare(i, 2, "\\&") == 0 && ++i) continue;
     text += page[i];
   }
   return text;
