@@ -93,7 +93,7 @@ TEST_CASE("temperature drifts gains and dark current with the time, from what it
   check_bound(rig, "temperature", rig.change({"temperature"}, 80));
   rig.board.detector.gain_per_c = 0.0;
   rig.board.detector.electrons_per_lsb = 10.0;
-  rig.board.detector.dark_current_e_per_s = 50.0;
+  rig.board.detector.dark_current_e_per_s = 50.0 / 45.0;
   // 5 LSB at 25 degrees, 10 LSB at 33.
   CHECK(rig.play({"temperature", "dark_current"}, 81)[80][0] == doctest::Approx(1010.0));
   check_bound(rig, "temperature", rig.change({"temperature"}, 80));
