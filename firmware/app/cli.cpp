@@ -38,7 +38,7 @@ CLI::Option* add(CLI::App& app, const Option& row, const Switch& flag) {
 void add(CLI::App& app, const OptionList& options) {
   for (const Option& row : options.rows()) {
     CLI::Option* option = std::visit([&](const auto& target) { return add(app, row, target); }, row.target);
-    if (!row.type_name.empty()) option->type_name(row.type_name);
+    if (const std::string word = value_word(row); !word.empty()) option->type_name(word);
     if (row.check) option->check(CLI::Validator([check = row.check](std::string& text) { return check(text); }, ""));
     option->required(row.is_required);
     for (const std::string& other : row.excluded) option->excludes(app.get_option(other));
@@ -73,7 +73,9 @@ std::optional<Complaint> unknown_name(const CLI::App& app, const CLI::App& comma
   const auto word = std::find_if_not(extras.begin(), extras.end(), dashed);
   if (&command == &app && word != extras.end()) {
     std::vector<std::string> names;
-    for (const Command* each : commands) names.emplace_back(each->name);
+    for (const Command* each : commands) {
+      if (!each->hidden) names.emplace_back(each->name);
+    }
     return unknown("a command", *word, names);
   }
   const auto option = std::find_if(extras.begin(), extras.end(), dashed);
@@ -123,14 +125,15 @@ Action print_instead(const CLI::App& app, const CLI::ParseError& asked) {
 }  // namespace
 
 CommandLine read_command_line(int argc, const char* const* argv, std::span<const Command* const> commands) {
-  CLI::App app{"The runtime of a computational compound eye: from photodiodes to pictures in real time."};
+  CLI::App app{std::string(program_summary)};
   app.set_version_flag("--version", COMPUEYE_VERSION);
   app.require_subcommand(1);
-  app.footer("Example: compueye run --board boards/sim-8x8 --frames 20\nEvery subcommand has its own --help.");
+  app.footer("Example: " + std::string(program_example) + "\nEvery subcommand has its own --help.");
   CommandLine line{Action{}, {}, false, {}};
   std::deque<OptionList> options;
   for (const Command* command : commands) {
     CLI::App* sub = app.add_subcommand(std::string(command->name), std::string(command->summary));
+    if (command->hidden) sub->group("");
     OptionList& list = options.emplace_back();
     Action action = command->declare(list);
     add(*sub, list);

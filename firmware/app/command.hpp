@@ -26,10 +26,18 @@ struct Command {
   Action (*declare)(OptionList& options) = nullptr;
   /// What --help says below the options; it ends in examples.
   std::string (*footer)() = nullptr;
+  /// For programs, such as a shell: --help does not list it.
+  bool hidden = false;
 };
 
-/// Every subcommand, in the order of --help.
+inline constexpr std::string_view program_summary =
+    "The runtime of a computational compound eye: from photodiodes to pictures in real time.";
+inline constexpr std::string_view program_example = "compueye run --board boards/sim-8x8 --frames 20";
+
+/// Every subcommand that --help lists, in its order.
 [[nodiscard]] std::span<const Command* const> commands() noexcept;
+/// The same, and behind them those that are hidden.
+[[nodiscard]] std::span<const Command* const> all_commands() noexcept;
 
 /// The action of a command that is a function of what it was asked for.
 template <class Request, class Function>

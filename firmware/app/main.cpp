@@ -10,7 +10,7 @@ namespace {
 using namespace compueye;
 
 hal::Result<void> run(firmware::Session& session, int argc, char** argv) {
-  const firmware::CommandLine line = firmware::read_command_line(argc, argv, firmware::commands());
+  const firmware::CommandLine line = firmware::read_command_line(argc, argv, firmware::all_commands());
   session.begin(line.on_signal, line.json, line.stdout_owner);
   if (!line.action) return tl::unexpected(line.action.error());
   return (*line.action)(session);

@@ -124,11 +124,21 @@ void OptionList::settings(std::string_view command, Overrides& overrides) {
           const auto value = value_from(*setting, text, setting->option);
           return value ? std::string() : value.error().sentence;
         });
+    for (const std::string_view word : setting->choices) rows_.back().words.emplace_back(word);
   }
 }
 
+Option& OptionList::board(std::string& folder, std::string_view example) {
+  return add("--board", folder,
+             fmt::format("folder of the board, such as {}, or the name of one in the folder COMPUEYE_BOARDS or where "
+                         "boards are installed (../share/compueye/boards beside the program's folder)",
+                         example));
+}
+
 void OptionList::scene(SceneChoice& scene, std::uint64_t& noise_seed) {
-  add("--scene", scene.name, "a built-in scene, a PNG or a scene file (default: the board's)");
+  add("--scene", scene.name,
+      "a built-in scene, a PNG or a scene file, or the name of one in the folder COMPUEYE_SCENES or where scenes are "
+      "installed (default: the board's)");
   add("--scene-seed", scene.seed, "which drawing of a built-in scene (default 0)").type("INT");
   add("--seed", noise_seed, "of the noise (default 0); the same seed gives the same samples").type("INT");
 }
@@ -160,7 +170,25 @@ hal::Result<std::string> OptionList::stdout_owner() const {
 Option& OptionList::put(std::string name, std::variant<Target, Switch> target, std::string meaning) {
   const auto* value = std::get_if<Target>(&target);
   Check check = value != nullptr ? readable(*value) : Check();
-  return rows_.emplace_back(Option{std::move(name), target, std::move(meaning), {}, std::move(check), {}, {}});
+  return rows_.emplace_back(Option{std::move(name), target, std::move(meaning), {}, std::move(check), {}, {}, {}});
+}
+
+Option& Option::among(const std::vector<std::string_view>& known) {
+  words.assign(known.begin(), known.end());
+  return where(one_of(known));
+}
+
+std::string value_word(const Option& option) {
+  const auto* target = std::get_if<Target>(&option.target);
+  if (target == nullptr || !option.type_name.empty()) return option.type_name;
+  return std::visit(
+      [](auto* value) {
+        using T = decltype(held_by(value));
+        if constexpr (std::is_same_v<T, std::string>) return std::string("TEXT");
+        if constexpr (std::is_same_v<T, double>) return std::string("FLOAT");
+        return std::string(std::is_unsigned_v<T> ? "UINT" : "INT");
+      },
+      *target);
 }
 
 Check length_mm() {

@@ -66,6 +66,7 @@ struct Option {
   std::string meaning;
   std::string type_name;  ///< of the value in --help; empty: by the target
   Check check;
+  std::vector<std::string> words;  ///< all that the value may be, where they are few
   std::vector<std::string> excluded;
   std::vector<std::string> needed;
   bool is_required = false;
@@ -73,6 +74,8 @@ struct Option {
 
   Option& type(std::string word) { return type_name = std::move(word), *this; }
   Option& where(Check complains) { return check = std::move(complains), *this; }
+  /// One of `known`, as one_of() has it.
+  Option& among(const std::vector<std::string_view>& known);
   Option& excludes(std::string other) { return excluded.push_back(std::move(other)), *this; }
   Option& needs(std::string other) { return needed.push_back(std::move(other)), *this; }
   Option& required() { return is_required = true, *this; }
@@ -95,6 +98,9 @@ class OptionList {
 
   /// The options of all settings of a board that `command` takes; see firmware/eye/settings.
   void settings(std::string_view command, Overrides& overrides);
+
+  /// --board, a folder or the name of one of shared_folders("boards").
+  Option& board(std::string& folder, std::string_view example = "boards/sim-8x8");
 
   /// What an eye looks at, but for its distance, and the seed of the noise.
   void scene(SceneChoice& scene, std::uint64_t& noise_seed);
@@ -120,6 +126,8 @@ class OptionList {
 
 /// A length in mm.
 [[nodiscard]] Check length_mm();
+/// What --help and the manual call the value, "INT"; nothing of a switch.
+[[nodiscard]] std::string value_word(const Option& option);
 /// One of `known`; for any other name the nearest is suggested.
 [[nodiscard]] Check one_of(std::vector<std::string_view> known);
 /// "admm (default), adm or cp": the words of one_of() for the meaning of an option.

@@ -13,6 +13,7 @@
 
 #include "firmware/files/output_target.hpp"
 #include "firmware/files/partial_file.hpp"
+#include "firmware/service/journal.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -68,6 +69,8 @@ int exit_code(const hal::Error& error) noexcept {
 std::string error_line(const hal::Error& error) {
   return "compueye: " + visible_text(error.text()) + "\n";
 }
+
+Session::Session(SignalLimits limits) : limits_(limits), journal_(is_journal(STDERR_FILENO)) {}
 
 Session::~Session() {
   end_watching();
@@ -175,7 +178,7 @@ void Session::leave(int code, const hal::Error& why) {
   // A progress line may still be open.
   if (isatty(STDERR_FILENO) == 1) static_cast<void>(err_.write_now("\n"));
   if (json_) static_cast<void>(print_text(json_text(Figures{{"error", figures_of(why)}}), out_, go_on));
-  static_cast<void>(err_.write(error_line(why), go_on));
+  static_cast<void>(err_.write(line_of(error_priority, error_line(why)), go_on));
   std::_Exit(code);
 }
 
@@ -184,6 +187,7 @@ recon::Progress Session::progress() {
   return {[this](std::string_view what, double done, double total) {
             working_.store(true, std::memory_order_relaxed);
             reporter_->update(what, done, total);
+            if (on_progress_) on_progress_(what);
             return !stop_requested_.load(std::memory_order_relaxed);
           },
           [this](std::string_view what, double seconds) { reporter_->expect(what, seconds); }};
@@ -202,12 +206,17 @@ std::function<bool()> Session::patience() {
   };
 }
 
-void Session::say(std::string_view line) {
-  static_cast<void>(err_.write_now("compueye: " + visible_text(line) + "\n"));
+std::string Session::line_of(int priority, std::string text) const {
+  return journal_ ? journal_prefix(priority) + text : text;
+}
+
+void Session::say(std::string_view line, int priority) {
+  static_cast<void>(err_.write_now(line_of(priority, "compueye: " + visible_text(line) + "\n")));
 }
 
 void Session::note(std::string_view sentence) {
-  static_cast<void>(err_.write("compueye: note: " + visible_text(sentence) + "\n", for_a_while(last_words)));
+  static_cast<void>(
+      err_.write(line_of(note_priority, "compueye: note: " + visible_text(sentence) + "\n"), for_a_while(last_words)));
 }
 
 hal::Result<void> Session::print(const std::string& text) {
@@ -231,7 +240,7 @@ int Session::end(hal::Result<void> done) {
     // The first failure is the one to tell, even when stdout refuses this one too.
     if (auto printed = print_json(done); !printed && done) done = std::move(printed);
   }
-  if (!done) static_cast<void>(err_.write(error_line(done.error()), for_a_while(last_words)));
+  if (!done) static_cast<void>(err_.write(line_of(error_priority, error_line(done.error())), for_a_while(last_words)));
   end_watching();
   return done ? 0 : exit_code(done.error());
 }

@@ -55,6 +55,9 @@ struct SignalLimits {
   std::chrono::milliseconds same_request{200};
 };
 
+/// Of syslog(3), for what Session tells.
+inline constexpr int error_priority = 3, note_priority = 5, info_priority = 6;
+
 /// Whoever has changed the terminal for a picture of its own. Both are called from another thread.
 struct ScreenUser {
   std::function<void()> give_back;   ///< before the process stops (Ctrl-Z) or is left
@@ -65,7 +68,7 @@ struct ScreenUser {
 /// speaks. One in a process, made in main() while that has a single thread.
 class Session {
  public:
-  explicit Session(SignalLimits limits = {}) : limits_(limits) {}
+  explicit Session(SignalLimits limits = {});
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
   ~Session();
@@ -99,10 +102,13 @@ class Session {
 
   /// Shows on stderr how far the work is; false once it should stop. For one thread at a time.
   [[nodiscard]] recon::Progress progress();
+  /// Told what is worked on, each time it gets on; {}: nobody is. On the thread that shows its progress.
+  void on_progress(std::function<void(std::string_view what)> told) { on_progress_ = std::move(told); }
   /// Sums up the stage in work.
   void end_progress();
   /// A line on stderr while the work goes on, if there is room for it; from any thread.
-  void say(std::string_view line);
+  /// `priority` of syslog(3) is for the journal, where stderr goes there.
+  void say(std::string_view line, int priority = info_priority);
   /// A sentence beside the report, on stderr.
   void note(std::string_view sentence);
   /// The report of the command, which prints one only: as text at once, or with --json as one object when the command
@@ -121,14 +127,18 @@ class Session {
   [[noreturn]] void leave(int code, const hal::Error& why);
   [[nodiscard]] hal::Result<void> print_json(const hal::Result<void>& done);
   [[nodiscard]] std::function<bool()> patience();
+  /// A whole line for stderr, at a priority where the journal reads it.
+  [[nodiscard]] std::string line_of(int priority, std::string text) const;
 
   const SignalLimits limits_;
   hal::MonotonicClock clock_;
   bool json_ = false;
   OutputStream out_{1}, err_{2};
+  const bool journal_;
   std::string stdout_owner_;
   std::optional<Figures> report_;  // to be printed at the end, with --json
   std::optional<ProgressReporter> reporter_;
+  std::function<void(std::string_view)> on_progress_;
 
   OnSignal on_signal_ = OnSignal::gives_up;
   std::atomic<bool> working_{false};  ///< on what it would end with

@@ -68,7 +68,7 @@ Finding examine_device_files(const Examined& e) {
     }
     const std::string group = group_of(path);
     return {Health::bad, file + " cannot be opened: " + std::strerror(why),
-            group.empty() ? "let a group open it, by a udev rule with GROUP=\"compueye\", MODE=\"0660\""
+            group.empty() ? "let a group open it, by a udev rule such as boards/60-compueye.rules, and join that group"
                           : fmt::format("sudo usermod -aG {} $USER, and log in again", group)};
   }
   return {Health::good, fmt::format("{} can be opened", fmt::join(files_of(e.board.wiring), ", "))};
@@ -89,9 +89,8 @@ Finding examine_udev_rule(const Examined& e) {
   }
   return {
       Health::note, fmt::format("no rule names {}:{}, so root alone may open the eye", vendor, product),
-      fmt::format("sudo cp boards/generic-{}/70-compueye.rules /etc/udev/rules.d/70-compueye-{}.rules && sudo udevadm "
-                  "control --reload, then plug it in again",
-                  bus->name, bus->name)};
+      "install the package compueye, or: sudo cp boards/60-compueye.rules /etc/udev/rules.d/ && sudo udevadm control "
+      "--reload; then plug it in again"};
 }
 
 Finding examine_bufsiz(const Examined& e) {

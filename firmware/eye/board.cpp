@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <numbers>
+#include <system_error>
 #include <utility>
 
 #include "firmware/eye/board_wiring.hpp"
 #include "firmware/eye/source_kinds.hpp"
 #include "firmware/files/cache_folder.hpp"
+#include "firmware/files/service_folder.hpp"
 #include "hal/try.hpp"
 #include "recon/solver_list.hpp"
 
@@ -187,7 +189,12 @@ double Board::noise_sigma() const noexcept {
 }
 
 std::string Board::eye_path() const {
-  return overrules("board", "eye") ? eye_file : (std::filesystem::path(folder) / eye_file).string();
+  if (overrules("board", "eye")) return eye_file;
+  std::error_code ignored;
+  const auto beside = std::filesystem::path(folder) / eye_file;
+  const std::string state = service_folder("STATE_DIRECTORY");
+  if (state.empty() || std::filesystem::exists(beside, ignored)) return beside.string();
+  return (std::filesystem::path(state) / eye_file).string();
 }
 
 std::string Board::cache() const {

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/realtime/realtime_settings.hpp"
+#include "firmware/supervisor/health_limits.hpp"
 #include "hal/build_settings.hpp"
 #include "hal/detector_settings.hpp"
 #include "hal/eye_geometry.hpp"
@@ -64,6 +66,8 @@ struct Board {
   std::optional<double> sigma;   ///< noise of one sample in units of y, >= 0; absent: as the sensor's figures give
   bool find_dead = true;         ///< run looks for channels that nobody has told to be dead
   SceneSettings scene;
+  RealtimeSettings realtime;
+  HealthLimits health;
 
   std::string folder;  ///< where board.toml lies; files belonging to the board go beside it
   std::string file;    ///< board.toml as errors name it
@@ -72,7 +76,8 @@ struct Board {
 
   /// Of one sample: `sigma`, or else what the sensor's figures give.
   [[nodiscard]] double noise_sigma() const noexcept;
-  /// Where `eye_file` is: relative to the working folder as a command line names it, else to the board's folder.
+  /// Where `eye_file` is: relative to the working folder as a command line names it, else to the board's folder or, if
+  /// it is not there, to the first of STATE_DIRECTORY, which a service of systemd has.
   [[nodiscard]] std::string eye_path() const;
   /// The folder in which what takes long to make is kept from run to run.
   [[nodiscard]] std::string cache() const;
@@ -84,7 +89,8 @@ struct Board {
   [[nodiscard]] bool overrules(std::string_view section, std::string_view key) const;
 };
 
-/// Reads a board. `folder` is the board's folder or its board.toml.
+/// Reads a board. `folder` is the board's folder or its board.toml, or the name of a board in one of
+/// shared_folders("boards").
 /// Errors name file, line, key, value and what was expected: not_found (no such folder or file: the boards that lie
 /// beside it are listed; unknown key or section: the nearest name is), bad_format (syntax, wrong type, missing key),
 /// out_of_range, mismatch (two keys that contradict each other), io.

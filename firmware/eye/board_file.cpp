@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "firmware/files/shared_folders.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -35,12 +36,17 @@ std::vector<std::string> boards_in(const fs::path& folder) {
   return names;
 }
 
-/// Where a person most likely keeps boards: beside the one asked for, else in ./boards.
+/// Where a person most likely keeps boards: beside the one asked for, in ./boards, else with the machine's.
 std::string boards_nearby(const fs::path& given) {
   const fs::path whole = given.filename() == file_name ? given.parent_path() : given;
   const fs::path named = whole.has_filename() ? whole : whole.parent_path();
   const fs::path beside = named.has_parent_path() ? named.parent_path() : fs::path(".");
-  for (const fs::path& folder : {beside, fs::path("boards")}) {
+  std::vector<fs::path> folders{beside, "boards"};
+  if (shared_name(given.string(), "boards")) {
+    for (const std::string& folder : shared_folders("boards")) folders.emplace_back(folder);
+  }
+  std::string listed;
+  for (const fs::path& folder : folders) {
     const std::vector<std::string> names = boards_in(folder);
     if (names.empty()) continue;
     const std::vector<std::string_view> views(names.begin(), names.end());
@@ -48,13 +54,13 @@ std::string boards_nearby(const fs::path& given) {
       const fs::path meant = folder == "." ? fs::path(*near) : folder / *near;
       return fmt::format("; did you mean '{}'?", meant.string());
     }
-    return fmt::format("; the boards in '{}' are {}", folder.string(), fmt::join(names, ", "));
+    if (listed.empty()) listed = fmt::format("; the boards in '{}' are {}", folder.string(), fmt::join(names, ", "));
   }
-  return fmt::format("; there is no board in '{}' either", beside.string());
+  return !listed.empty() ? listed : fmt::format("; there is no board in '{}' either", beside.string());
 }
 
 /// The board.toml meant by `given`: a folder that holds one, or the file itself. not_found lists the boards that lie
-/// where `given` was looked for, the nearest name first of all.
+/// where `given` was looked for, or says which has the nearest name.
 hal::Result<fs::path> find_board_file(const fs::path& given) {
   if (given.empty()) {
     return hal::fail(ErrorCode::usage, "--board", "is empty, expected the folder of a board, such as boards/sim-8x8");
@@ -62,7 +68,8 @@ hal::Result<fs::path> find_board_file(const fs::path& given) {
   std::error_code error;
   const fs::file_status status = fs::status(given, error);
   if (status.type() == fs::file_type::not_found) {
-    return hal::fail(ErrorCode::not_found, given.string(), "no such board" + boards_nearby(given));
+    return hal::fail(ErrorCode::not_found, given.string(),
+                     "no such board" + boards_nearby(given) + shared_folders_searched(given.string(), "boards"));
   }
   if (status.type() == fs::file_type::none) {
     return hal::fail(ErrorCode::io, given.string(), "cannot look at the board: " + error.message());
@@ -109,7 +116,7 @@ hal::Result<std::string> read_board_file(const fs::path& file) {
 }  // namespace
 
 hal::Result<Board> load_board(const std::string& folder) {
-  const fs::path file = TRY(find_board_file(folder));
+  const fs::path file = TRY(find_board_file(given_or_shared(folder, "boards")));
   Board board = TRY(parse_board(TRY(read_board_file(file)), file.string()));
   board.folder = file.has_parent_path() ? file.parent_path().string() : ".";
   return board;

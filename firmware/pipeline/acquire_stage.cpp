@@ -13,10 +13,13 @@ void AcquireStage::run() noexcept {
     RawSlot* const slot = out_.claim();
     if (slot == nullptr) break;
     const std::int64_t begin_ns = clock_.now_ns();
+    beat_.begins(begin_ns);
     hal::Result<hal::SampleBlock> block = read_source(begin_ns + settings_.read_timeout_ns);
+    const std::int64_t end_ns = clock_.now_ns();
+    beat_.ends(end_ns);
     if (block) {
-      take(*block, *slot);
-    } else if (!goes_on_after(block.error(), clock_.now_ns() - begin_ns)) {
+      take(*block, *slot, end_ns);
+    } else if (!goes_on_after(block.error(), end_ns - begin_ns)) {
       break;
     }
   }
@@ -32,13 +35,12 @@ hal::Result<hal::SampleBlock> AcquireStage::read_source(std::int64_t deadline_ns
   }
 }
 
-void AcquireStage::take(const hal::SampleBlock& block, RawSlot& slot) noexcept {
+void AcquireStage::take(const hal::SampleBlock& block, RawSlot& slot, std::int64_t received_ns) noexcept {
   ++own_.produced;
   silent_ns_ = 0;
   if (block.flags.overrun) ++overrun_flags_;
   if (block.flags.dark) ++dark_frames_;
   if (!block.flags.time_ok) ++untrusted_times_;
-  const std::int64_t received_ns = clock_.now_ns();
   slot.assign(block, {.frame = block.frame,
                       .t_ns = block.t_ns,
                       .exposed_at_ns = device_time_.exposure_start_ns(block, received_ns),

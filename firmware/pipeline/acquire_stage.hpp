@@ -7,6 +7,7 @@
 #include "firmware/pipeline/frame_slots.hpp"
 #include "firmware/pipeline/run_control.hpp"
 #include "firmware/pipeline/settings.hpp"
+#include "firmware/pipeline/stage_beat.hpp"
 #include "hal/accounting.hpp"
 #include "hal/clock.hpp"
 #include "hal/sample_source.hpp"
@@ -17,12 +18,13 @@ namespace compueye::firmware {
 class AcquireStage {
  public:
   AcquireStage(const PipelineSettings& settings, hal::SampleSource& source, hal::Clock& clock, RunControl& control,
-               BlockQueue<RawSlot>& out) noexcept
+               BlockQueue<RawSlot>& out, StageBeat& beat) noexcept
       : settings_(settings),
         source_(source),
         clock_(clock),
         control_(control),
         out_(out),
+        beat_(beat),
         device_time_(settings.device_clock, source.describe().frame_rate_hz) {}
 
   /// Until the stream or the run ends.
@@ -38,7 +40,7 @@ class AcquireStage {
 
  private:
   [[nodiscard]] hal::Result<hal::SampleBlock> read_source(std::int64_t deadline_ns) noexcept;
-  void take(const hal::SampleBlock& block, RawSlot& slot) noexcept;
+  void take(const hal::SampleBlock& block, RawSlot& slot, std::int64_t received_ns) noexcept;
   [[nodiscard]] bool goes_on_after(hal::Error& error, std::int64_t waited_ns) noexcept;
 
   const PipelineSettings& settings_;
@@ -46,6 +48,7 @@ class AcquireStage {
   hal::Clock& clock_;
   RunControl& control_;
   BlockQueue<RawSlot>& out_;
+  StageBeat& beat_;
   DeviceTime device_time_;
   hal::FrameAccount own_;
   std::uint64_t pushed_ = 0;

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <vector>
+
+#include "firmware/pipeline/inheriting_mutex.hpp"
 
 namespace compueye::firmware {
 
@@ -36,7 +37,7 @@ class BlockQueue {
   [[nodiscard]] Block* claim() noexcept {
     std::unique_lock lock(mutex_);
     if (pacing_ == Pacing::every_frame) {
-      room_.wait(lock, [this] { return closed_ || count_ < waiting_.size(); });
+      room_.wait(mutex_, [this] { return closed_ || count_ < waiting_.size(); });
     }
     if (closed_) return nullptr;
     if (writing_ == none) writing_ = free_[--free_count_];
@@ -74,7 +75,7 @@ class BlockQueue {
       free_[free_count_++] = reading_;
       reading_ = none;
     }
-    filled_.wait(lock, [this] { return closed_ || count_ > 0; });
+    filled_.wait(mutex_, [this] { return closed_ || count_ > 0; });
     if (count_ == 0) return nullptr;
     reading_ = take_oldest();
     Block* const block = &blocks_[reading_];
@@ -139,9 +140,9 @@ class BlockQueue {
   }
 
   const Pacing pacing_;
-  mutable std::mutex mutex_;
-  std::condition_variable filled_;
-  std::condition_variable room_;
+  mutable InheritingMutex mutex_;
+  InheritingCondition filled_;
+  InheritingCondition room_;
   std::vector<Block> blocks_;
   std::vector<std::size_t> waiting_;  // ring of indices into blocks_
   std::vector<std::size_t> free_;     // stack of indices

@@ -24,24 +24,31 @@ bool CorrectStage::take(const RawSlot& raw, CorrectedSlot& corrected) noexcept {
   const hal::SampleBlock block = raw.view();
   if (last_frame_ && block.frame <= *last_frame_) {
     ++own_.drops(hal::DropReason::corrupt);
+    beat_.dropped(clock_.now_ns());
     return true;
   }
   last_frame_ = block.frame;
 
   const std::int64_t begin_ns = clock_.now_ns();
+  beat_.begins(begin_ns);
   const CorrectionReport report = correction_.apply(block, corrected.y, corrected.weights);
-  times_.add(clock_.now_ns() - begin_ns);
+  const std::int64_t end_ns = clock_.now_ns();
+  beat_.ends(end_ns);
+  times_.add(end_ns - begin_ns);
 
   note_masked(report);
   if (report.saturated > 0) ++saturated_frames_;
   if (!report.usable) {
     ++own_.drops(report.reason);
+    // That too few channels see is the scene's doing.
+    if (report.reason == hal::DropReason::corrupt) beat_.dropped(end_ns);
     return !configuration_is_lost(report, block.config_id);
   }
   mismatches_in_a_row_ = 0;
   corrected.stamp = raw.stamp;
   if (out_.push()) {
     ++pushed_;
+    beat_.handed_on();
   } else {
     ++own_.drops(hal::DropReason::stopped);
   }

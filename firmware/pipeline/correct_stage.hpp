@@ -8,6 +8,7 @@
 #include "firmware/pipeline/frame_slots.hpp"
 #include "firmware/pipeline/run_control.hpp"
 #include "firmware/pipeline/settings.hpp"
+#include "firmware/pipeline/stage_beat.hpp"
 #include "firmware/pipeline/time_histogram.hpp"
 #include "hal/accounting.hpp"
 #include "hal/clock.hpp"
@@ -19,8 +20,14 @@ namespace compueye::firmware {
 class CorrectStage {
  public:
   CorrectStage(const PipelineSettings& settings, Correction& correction, hal::Clock& clock, RunControl& control,
-               BlockQueue<RawSlot>& in, BlockQueue<CorrectedSlot>& out) noexcept
-      : settings_(settings), correction_(correction), clock_(clock), control_(control), in_(in), out_(out) {}
+               BlockQueue<RawSlot>& in, BlockQueue<CorrectedSlot>& out, StageBeat& beat) noexcept
+      : settings_(settings),
+        correction_(correction),
+        clock_(clock),
+        control_(control),
+        in_(in),
+        out_(out),
+        beat_(beat) {}
 
   void run() noexcept;
 
@@ -44,6 +51,7 @@ class CorrectStage {
   RunControl& control_;
   BlockQueue<RawSlot>& in_;
   BlockQueue<CorrectedSlot>& out_;
+  StageBeat& beat_;
 
   hal::FrameAccount own_;
   std::uint64_t pushed_ = 0;

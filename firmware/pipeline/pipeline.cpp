@@ -53,6 +53,7 @@ struct Pipeline::State {
         sink(sink_),
         clock(clock_),
         observer(observer_),
+        beats(settings.beats != nullptr ? *settings.beats : unwatched),
         channels(static_cast<std::size_t>(solver.channels())),
         raw(static_cast<std::size_t>(settings.queue_capacity), settings.pacing, RawSlot(channels)),
         corrected(waiting_for_solver(settings), settings.pacing, CorrectedSlot(channels)),
@@ -66,6 +67,8 @@ struct Pipeline::State {
   hal::FrameSink& sink;
   hal::Clock& clock;
   FrameObserver* observer;
+  StageBeats unwatched;
+  StageBeats& beats;
   std::size_t channels;
   BlockQueue<RawSlot> raw;
   BlockQueue<CorrectedSlot> corrected;
@@ -82,21 +85,34 @@ struct Stages {
 };
 
 /// Runs the stages to the end, publish on the calling thread.
-hal::Result<void> run_threads(Stages& stages, RunControl& control) {
+hal::Result<void> run_threads(Stages& stages, RunControl& control, const PipelineSettings& settings) {
+  const auto begins = [&settings](Stage stage) {
+    if (settings.thread_begins) settings.thread_begins(stage);
+  };
   std::thread reconstruct;
   std::thread correct;
   std::thread acquire;
   hal::Result<void> made;
   try {
-    reconstruct = std::thread([&] { stages.reconstruct.run(); });
-    correct = std::thread([&] { stages.correct.run(); });
-    acquire = std::thread([&] { stages.acquire.run(); });
+    reconstruct = std::thread([&] {
+      begins(Stage::reconstruct);
+      stages.reconstruct.run();
+    });
+    correct = std::thread([&] {
+      begins(Stage::correct);
+      stages.correct.run();
+    });
+    acquire = std::thread([&] {
+      begins(Stage::acquire);
+      stages.acquire.run();
+    });
   } catch (const std::system_error& error) {
     made = hal::fail(ErrorCode::no_space, "pipeline",
                      std::string("the operating system refused a thread (") + error.what() +
                          "), expected room for three; is the limit on processes too low?");
     control.end_now(Ending::internal_failure, made.error());
   }
+  begins(Stage::publish);
   stages.publish.run();
   for (std::thread* thread : {&acquire, &correct, &reconstruct}) {
     if (thread->joinable()) thread->join();
@@ -169,16 +185,18 @@ RunSummary Pipeline::run(const std::atomic<bool>& stop) {
   s.corrected.reset();
   s.pictures.reset();
   s.correction.restart();
+  for (StageBeat& beat : s.beats.of) beat.reset();
 
   RunControl control(stop, s.raw, s.corrected, s.pictures);
   // NOLINTNEXTLINE(modernize-make-unique): in C++17 manner it cannot fill an aggregate, and clang 14 knows no other.
   const auto stages = std::unique_ptr<Stages>(
-      new Stages{AcquireStage(s.settings, s.source, s.clock, control, s.raw),
-                 CorrectStage(s.settings, s.correction, s.clock, control, s.raw, s.corrected),
-                 ReconstructStage(s.solver, s.clock, control, s.corrected, s.pictures),
-                 PublishStage(s.settings, s.sink, s.solver.format(), s.clock, s.observer, control, s.pictures)});
+      new Stages{AcquireStage(s.settings, s.source, s.clock, control, s.raw, s.beats[Stage::acquire]),
+                 CorrectStage(s.settings, s.correction, s.clock, control, s.raw, s.corrected, s.beats[Stage::correct]),
+                 ReconstructStage(s.solver, s.clock, control, s.corrected, s.pictures, s.beats[Stage::reconstruct]),
+                 PublishStage(s.settings, s.sink, s.solver.format(), s.clock, s.observer, control, s.pictures,
+                              s.beats[Stage::publish])});
   const std::int64_t begin_ns = s.clock.now_ns();
-  const hal::Result<void> ran = run_threads(*stages, control);
+  const hal::Result<void> ran = run_threads(*stages, control, s.settings);
   summary.wall_ns = s.clock.now_ns() - begin_ns;
 
   // stop() asks the device what it made last: the books are those after it.

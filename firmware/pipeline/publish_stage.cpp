@@ -9,7 +9,10 @@ void PublishStage::run() noexcept {
   while (!control_.stop_seen()) {
     const PictureSlot* const picture = in_.pop();
     if (picture == nullptr) break;
+    beat_.begins(clock_.now_ns());
     take(*picture);
+    // With the observer's part.
+    beat_.ends(clock_.now_ns());
   }
   in_.abort();
 }
@@ -34,12 +37,14 @@ void PublishStage::take(const PictureSlot& picture) noexcept {
     return;
   }
   ++account_.drops(hal::DropReason::sink_failed);
+  beat_.dropped(end_ns);
   if (!sink_error_) sink_error_ = written.error();
   if (settings_.stop_on_sink_failure) control_.end_now(Ending::sink_failed, std::move(written.error()));
 }
 
 void PublishStage::delivered(const PictureSlot& picture, const hal::Frame& frame, std::int64_t age_ns) noexcept {
   ++account_.delivered;
+  beat_.handed_on();
   ages_.add(age_ns);
   const bool late = settings_.deadline_ns > 0 && age_ns > settings_.deadline_ns;
   if (late) ++deadline_misses_;

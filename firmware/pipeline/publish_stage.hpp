@@ -8,6 +8,7 @@
 #include "firmware/pipeline/frame_slots.hpp"
 #include "firmware/pipeline/run_control.hpp"
 #include "firmware/pipeline/settings.hpp"
+#include "firmware/pipeline/stage_beat.hpp"
 #include "firmware/pipeline/time_histogram.hpp"
 #include "hal/accounting.hpp"
 #include "hal/clock.hpp"
@@ -20,14 +21,15 @@ class PublishStage {
  public:
   /// `observer` may be null.
   PublishStage(const PipelineSettings& settings, hal::FrameSink& sink, hal::FrameFormat format, hal::Clock& clock,
-               FrameObserver* observer, RunControl& control, BlockQueue<PictureSlot>& in) noexcept
+               FrameObserver* observer, RunControl& control, BlockQueue<PictureSlot>& in, StageBeat& beat) noexcept
       : settings_(settings),
         sink_(sink),
         format_(format),
         clock_(clock),
         observer_(observer),
         control_(control),
-        in_(in) {}
+        in_(in),
+        beat_(beat) {}
 
   void run() noexcept;
 
@@ -51,6 +53,7 @@ class PublishStage {
   FrameObserver* observer_;
   RunControl& control_;
   BlockQueue<PictureSlot>& in_;
+  StageBeat& beat_;
 
   hal::FrameAccount account_;
   TimeHistogram write_times_;

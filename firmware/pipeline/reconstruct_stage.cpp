@@ -24,18 +24,23 @@ void ReconstructStage::take(CorrectedSlot& corrected, PictureSlot& picture) noex
   picture.weights.swap(corrected.weights);
 
   const std::int64_t begin_ns = clock_.now_ns();
+  beat_.begins(begin_ns);
   solver_.mask(picture.weights);
   picture.info = solver_.solve(picture.y, picture.weights, picture.pixels);
-  picture.solve_ns = clock_.now_ns() - begin_ns;
+  const std::int64_t end_ns = clock_.now_ns();
+  beat_.ends(end_ns);
+  picture.solve_ns = end_ns - begin_ns;
   times_.add(picture.solve_ns);
 
   if (picture.info.health == recon::Health::invalid) {
     ++own_.drops(hal::DropReason::solver_invalid);
+    beat_.dropped(end_ns);
     return;
   }
   ++(picture.info.health == recon::Health::converged ? converged_ : budget_used_);
   if (out_.push()) {
     ++pushed_;
+    beat_.handed_on();
   } else {
     ++own_.drops(hal::DropReason::stopped);
   }

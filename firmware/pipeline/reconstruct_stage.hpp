@@ -6,6 +6,7 @@
 #include "firmware/pipeline/frame_slots.hpp"
 #include "firmware/pipeline/frame_solver.hpp"
 #include "firmware/pipeline/run_control.hpp"
+#include "firmware/pipeline/stage_beat.hpp"
 #include "firmware/pipeline/time_histogram.hpp"
 #include "hal/accounting.hpp"
 #include "hal/clock.hpp"
@@ -17,8 +18,8 @@ namespace compueye::firmware {
 class ReconstructStage {
  public:
   ReconstructStage(FrameSolver& solver, hal::Clock& clock, RunControl& control, BlockQueue<CorrectedSlot>& in,
-                   BlockQueue<PictureSlot>& out) noexcept
-      : solver_(solver), clock_(clock), control_(control), in_(in), out_(out) {}
+                   BlockQueue<PictureSlot>& out, StageBeat& beat) noexcept
+      : solver_(solver), clock_(clock), control_(control), in_(in), out_(out), beat_(beat) {}
 
   void run() noexcept;
 
@@ -36,6 +37,7 @@ class ReconstructStage {
   RunControl& control_;
   BlockQueue<CorrectedSlot>& in_;
   BlockQueue<PictureSlot>& out_;
+  StageBeat& beat_;
 
   hal::FrameAccount own_;
   std::uint64_t pushed_ = 0;

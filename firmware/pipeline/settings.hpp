@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "firmware/pipeline/block_queue.hpp"
 #include "firmware/pipeline/correction.hpp"
 #include "firmware/pipeline/device_time.hpp"
+#include "firmware/pipeline/stage_beat.hpp"
 #include "hal/result.hpp"
 
 namespace compueye::firmware {
@@ -29,6 +31,10 @@ struct PipelineSettings {
   std::uint64_t config_patience = 100;  ///< consecutive frames with a foreign config_id that end the run; 0: never
 
   CorrectionSettings correction;
+
+  StageBeats* beats = nullptr;  ///< for whoever watches the run; must outlive the pipeline. Null: nobody does
+  /// Called by each stage's thread before its first frame, by that of publish too; may be empty.
+  std::function<void(Stage)> thread_begins;
 
   /// out_of_range names the setting. The correction settings are checked against the source, by Correction::create().
   [[nodiscard]] hal::Result<void> validate() const;

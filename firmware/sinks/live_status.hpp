@@ -7,6 +7,13 @@
 
 namespace compueye::firmware {
 
+/// What the newest picture is worth to whoever looks at it.
+enum class PictureAge : std::uint8_t {
+  fresh,
+  held,  ///< it stays, and is said to be held
+  gone,  ///< too old to act upon: it is taken away
+};
+
 /// How a run goes: told by its publish thread and by whoever watches its source, read by any. Numbers of one frame may
 /// be mixed with those of the next.
 class LiveStatus {
@@ -30,6 +37,9 @@ class LiveStatus {
   /// So many channels are left out because they do not follow the others.
   void left_out_are(std::uint64_t channels) noexcept { left_out_.store(channels, std::memory_order_relaxed); }
 
+  void picture_is(PictureAge age) noexcept { picture_.store(age, std::memory_order_relaxed); }
+
+  [[nodiscard]] PictureAge picture() const noexcept { return picture_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_.load(std::memory_order_relaxed); }
   [[nodiscard]] double misfit() const noexcept { return misfit_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t faults() const noexcept { return faults_.load(std::memory_order_relaxed); }
@@ -54,6 +64,7 @@ class LiveStatus {
   std::atomic<bool> recovering_{false};
   std::atomic<double> misfit_{0.0};
   std::atomic<std::uint64_t> left_out_{0};
+  std::atomic<PictureAge> picture_{PictureAge::fresh};
   const std::atomic<std::uint64_t>* checked_ = nullptr;
   const std::atomic<bool>* checking_ = nullptr;
 };

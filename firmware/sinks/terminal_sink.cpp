@@ -77,7 +77,7 @@ TerminalSink::TerminalSink(const hal::Clock& clock, TerminalOptions options, con
       options_(options),
       out_(options.fd),
       status_line_(status != nullptr ? *status : nobodys_status),
-      has_status_(status != nullptr) {}
+      status_(status) {}
 
 TerminalSink::~TerminalSink() {
   static_cast<void>(TerminalSink::close());
@@ -117,11 +117,12 @@ hal::Result<void> TerminalSink::open(hal::FrameFormat format) {
                                  " pixels, expected at least 1 x 1");
   }
   format_ = format;
+  black_.assign(static_cast<std::size_t>(format.rows) * static_cast<std::size_t>(format.cols), 0.0F);
   lay_out(size_now());
   used_ = sent_ = 0;
   shown_ = passed_over_ = 0;
   last_ns_ = clock_->now_ns();
-  anything_drawn_ = line_begun_ = given_back_ = anew_ = false;
+  anything_drawn_ = line_begun_ = given_back_ = anew_ = blanked_ = false;
   put(hide_cursor);
   auto ok = send();
   open_ = ok.has_value();
@@ -205,13 +206,14 @@ void TerminalSink::put_status(std::int64_t now_ns) noexcept {
   const auto room = static_cast<std::size_t>(std::min(size_.columns, static_cast<int>(sizeof text)));
   const std::size_t begin = used_;
   if (anything_drawn_) {
-    put("frame ");
+    const PictureAge age = status_ != nullptr ? status_->picture() : PictureAge::fresh;
+    put(age == PictureAge::gone ? "NO PICTURE since frame " : age == PictureAge::held ? "HELD frame " : "frame ");
     put_number(frame_);
   } else {
     put("no frame yet");
   }
   const std::size_t taken = used_ - begin;
-  if (has_status_ && taken + 3 < room) {
+  if (status_ != nullptr && taken + 3 < room) {
     put("  ");
     put(status_line_.print(now_ns, std::span(text, room - taken - 2)));
   }
@@ -263,6 +265,7 @@ hal::Result<void> TerminalSink::write(const hal::Frame& frame) {
     anything_drawn_ = anew_ = false;
   }
   draw(frame, now);
+  blanked_ = false;
   last_ns_ = now;
   ++shown_;
   return send();
@@ -274,6 +277,12 @@ void TerminalSink::tell() noexcept {
   const std::int64_t now = clock_->now_ns();
   if (!open_ || given_back_ || anew_ || now - last_ns_ < quiet_ns || !send() || sent_ < used_) return;
   if (size_now() != size_) return;
+  if (anything_drawn_ && !blanked_ && status_ != nullptr && status_->picture() == PictureAge::gone) {
+    draw({black_, format_, frame_, 0}, now);
+    blanked_ = true;
+    static_cast<void>(send());
+    return;
+  }
   put("\r");
   put_status(now);
   line_begun_ = !anything_drawn_;

@@ -45,8 +45,9 @@ struct TerminalOptions {
 
 /// A live picture in a terminal: two pixels a character (the upper half block, foreground above background) where it
 /// can, scaled down by averaging or up by whole numbers, redrawn in place, with the frame number and how the run goes
-/// below. Intensities 0..1 become black to white, clipped. The picture follows the size of the terminal; write() does
-/// not allocate but when that has grown.
+/// below. A picture that the status says is held is called so, and one that is gone is blanked. Intensities 0..1 become
+/// black to white, clipped. The picture follows the size of the terminal; write() does not allocate but when that has
+/// grown.
 ///
 /// A terminal that takes nothing (Ctrl-S, a hung connection) never holds the caller: its frames are passed over.
 class TerminalSink final : public hal::FrameSink {
@@ -64,7 +65,7 @@ class TerminalSink final : public hal::FrameSink {
   [[nodiscard]] hal::Result<void> close() override;
 
   // From any thread.
-  /// Draws the line below the picture anew when no frame has done so for a while.
+  /// Draws the line below the picture anew when no frame has done so for a while, and blanks a picture that is gone.
   void tell() noexcept;
   /// Cursor and colours as they were, and nothing more is drawn: before the process stops or is left.
   void give_back() noexcept;
@@ -103,7 +104,7 @@ class TerminalSink final : public hal::FrameSink {
   TerminalOptions options_;
   OutputStream out_;
   StatusLine status_line_;
-  bool has_status_;
+  const LiveStatus* status_;
 
   std::mutex mutex_;  // of all below: the picture's thread and whoever gives the terminal back
   hal::FrameFormat format_;
@@ -112,11 +113,13 @@ class TerminalSink final : public hal::FrameSink {
   bool given_back_ = false;
   bool anew_ = false;
   bool anything_drawn_ = false;
+  bool blanked_ = false;
   bool line_begun_ = false;  // that of the first frame, before it
   std::uint64_t frame_ = 0;  // the last one drawn
   std::int64_t last_ns_ = 0;
   std::uint64_t shown_ = 0;
   std::uint64_t passed_over_ = 0;
+  std::vector<float> black_;    // a picture
   std::vector<int> row_edges_;  // shown row r averages the picture's rows row_edges_[r] to row_edges_[r + 1] - 1
   std::vector<int> col_edges_;
   std::string buffer_;

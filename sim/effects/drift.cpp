@@ -14,7 +14,11 @@ constexpr double hour_s = 3600.0;
 }  // namespace
 
 double drift_bound(const Circumstances& c, double per_hour) noexcept {
-  return margin * std::fabs(per_hour * c.scene.seconds_to_judge() / hour_s) * c.preview.rms;
+  return margin * std::fabs(per_hour * c.scene.seconds_of_drift() / hour_s) * c.preview.rms;
+}
+
+double largest_drift(const Circumstances& c, double per_hour) noexcept {
+  return 1.0 + std::max(per_hour * c.scene.seconds_of_drift() / hour_s, 0.0);
 }
 
 void add_drift(Workings& w, double per_hour) {

@@ -13,4 +13,9 @@ namespace compueye::sim {
   return false;
 }
 
+/// Of all levels: the lamp's where it lights something, else the display's.
+[[nodiscard]] inline double light_drift_per_hour(const Scene& scene) noexcept {
+  return lamp_lights(scene) ? scene.light.drift_per_hour : scene.display.drift_per_hour;
+}
+
 }  // namespace compueye::sim

@@ -14,7 +14,7 @@ constexpr std::string_view own_name = "shot_noise";
 
 std::string calls_for(const Circumstances& c) {
   const double electrons = c.board.detector.electrons_per_lsb;
-  const double level = c.preview.largest + dark_charge_lsb(c.board, c.board.detector.temperature_c);
+  const double level = c.preview.largest + largest_dark_charge_lsb(c);
   if (!(electrons > 0.0 && (level > 0.0 || !c.scene.still()))) return "";
   return "the brightest channel has " + figure(level * electrons) + " electrons";
 }
@@ -22,7 +22,7 @@ std::string calls_for(const Circumstances& c) {
 // A Poisson number of mean S e has the variance S e, so the level S has the variance S / e; its mean over the channels
 // is mean S / e.
 double bound(const Circumstances& c) {
-  const double dark = dark_charge_lsb(c.board, c.board.detector.temperature_c);
+  const double dark = largest_dark_charge_lsb(c);
   const double level = margin * std::max(c.preview.mean, 0.0) + dark;
   return std::sqrt(level / c.board.detector.electrons_per_lsb);
 }

@@ -9,24 +9,22 @@
 namespace compueye::sim {
 namespace {
 
-double end_c(const Circumstances& c) noexcept {
-  return temperature_c(c.board.detector, c.scene.seconds_to_judge());
-}
-
 /// Largest relative change of the gains.
 double gain_change(const Circumstances& c) noexcept {
   const hal::DetectorSettings& d = c.board.detector;
-  return std::fabs(d.gain_per_c) * std::max(std::fabs(d.temperature_c - 25.0), std::fabs(end_c(c) - 25.0));
+  return std::fabs(d.gain_per_c) * std::max(std::fabs(d.temperature_c - 25.0), std::fabs(end_temperature_c(c) - 25.0));
 }
 
 double dark_change_lsb(const Circumstances& c) noexcept {
-  return std::fabs(dark_charge_lsb(c.board, end_c(c)) - dark_charge_lsb(c.board, c.board.detector.temperature_c));
+  return std::fabs(dark_charge_lsb(c.board, end_temperature_c(c)) -
+                   dark_charge_lsb(c.board, c.board.detector.temperature_c));
 }
 
 std::string calls_for(const Circumstances& c) {
   if (gain_change(c) == 0.0 && dark_change_lsb(c) == 0.0) return "";
-  return "from " + figure(c.board.detector.temperature_c) + " to " + figure(end_c(c)) + " degrees C gains change by " +
-         figure(100.0 * gain_change(c)) + " %, dark levels by " + figure(dark_change_lsb(c)) + " LSB";
+  return "from " + figure(c.board.detector.temperature_c) + " to " + figure(end_temperature_c(c)) +
+         " degrees C gains change by " + figure(100.0 * gain_change(c)) + " %, dark levels by " +
+         figure(dark_change_lsb(c)) + " LSB";
 }
 
 void apply(const Circumstances& c, Workings& w) {

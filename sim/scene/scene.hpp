@@ -51,6 +51,9 @@ struct Scene {
   [[nodiscard]] double own_time_s(double start_s) const noexcept;
   /// Its duration, or the first hour of a scene that goes on for ever.
   [[nodiscard]] double seconds_to_judge() const noexcept;
+  /// The first hour, or its duration where that is longer: what lamps and sensors do slowly goes on while a scene
+  /// begins anew.
+  [[nodiscard]] double seconds_of_drift() const noexcept;
 };
 
 /// The picture stretched over the whole object plane.

@@ -146,9 +146,14 @@ Result<void> check_display(const std::string& name, const Display& display) {
 
 }  // namespace
 
+constexpr double hour_s = 3600.0;
+
 double Scene::seconds_to_judge() const noexcept {
-  constexpr double hour = 3600.0;
-  return duration_s > 0.0 ? std::min(duration_s, longest_scene_s) : hour;
+  return duration_s > 0.0 ? std::min(duration_s, longest_scene_s) : hour_s;
+}
+
+double Scene::seconds_of_drift() const noexcept {
+  return std::max(seconds_to_judge(), hour_s);
 }
 
 Result<void> validate(const Scene& scene) {

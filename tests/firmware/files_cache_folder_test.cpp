@@ -1,37 +1,16 @@
 #include "firmware/files/cache_folder.hpp"
 
 #include <doctest/doctest.h>
-#include <stdlib.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include "tests/firmware/environment_variable.hpp"
 #include "tests/firmware/temporary_folder.hpp"
 
 using compueye::firmware::cache_folder;
-
-namespace {
-
-/// An environment variable for as long as this lives.
-class Variable {
- public:
-  Variable(const char* name, const std::string& value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before, had_ = true;
-    value.empty() ? ::unsetenv(name) : ::setenv(name, value.c_str(), 1);
-  }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-  ~Variable() { had_ ? ::setenv(name_, before_.c_str(), 1) : ::unsetenv(name_); }
-
- private:
-  const char* name_;
-  std::string before_;
-  bool had_ = false;
-};
-
-}  // namespace
+using Variable = compueye::test::EnvironmentVariable;
 
 TEST_CASE("a cache lies in the board's folder, or in the user's where that cannot be written") {
   const compueye::test::TemporaryFolder folder;
@@ -43,6 +22,10 @@ TEST_CASE("a cache lies in the board's folder, or in the user's where that canno
   // What is no folder cannot be written by root either.
   for (const auto& each : {board, other}) std::ofstream(each / ".cache") << "in the way";
   const std::string caches = (folder.path() / "caches").string();
+  {
+    const Variable service("CACHE_DIRECTORY", caches + ":/elsewhere"), told("XDG_CACHE_HOME", "/not/here");
+    CHECK(cache_folder(board.string()).starts_with(caches + "/board-"));
+  }
   {
     const Variable told("XDG_CACHE_HOME", caches);
     const std::string found = cache_folder(board.string());

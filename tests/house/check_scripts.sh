@@ -154,7 +154,7 @@ expect "apt-get that claims success" 1 'still not installed'
 machine "$everything"
 run install-packages --check nonsense
 expect "an unknown group" 2 "no package group 'nonsense'"
-for script in aarch64-root count-instructions install-packages build-preset demo libgpiod2 mcu test tidy; do
+for script in check-package count-instructions foreign-root install-packages build-preset demo libgpiod2 mcu package test tidy; do
   run "$script" --help
   expect "$script --help has an example" 0 "^Example: tools/$script"
   run "$script" --nonsense
@@ -162,7 +162,7 @@ for script in aarch64-root count-instructions install-packages build-preset demo
 done
 
 # The archives of another processor, asked for without a word to this machine's package system.
-folder=$project/build/aarch64-root
+folder=$project/build/arm64-root
 arm64_machine() {
   machine "$everything"
   rm -rf "$folder"
@@ -171,37 +171,49 @@ echo "\$*" >>"$state/apt-calls"
 for word; do [[ \$word != Dir::Cache=* ]] || touch "\${word#Dir::Cache=}/archives/libpng-dev_1_arm64.deb"; done
 END
   shim dpkg-deb <<'END'
-mkdir -p "$3/usr/lib" && ln -s /lib/libm.so.6 "$3/usr/lib/libm.so"
+case $1 in
+  --extract) mkdir -p "$3/usr/lib" && ln -s /lib/libm.so.6 "$3/usr/lib/libm.so" ;;
+  --field) case ${3:-} in Package) echo libpng-dev ;; Multi-Arch) echo same ;; *) printf 'Package: libpng-dev\nDescription: x\n more\n' ;; esac ;;
+  --fsys-tarfile) mkdir -p "$TMPDIR/usr/lib" && touch "$TMPDIR/usr/lib/libpng.a" && tar --create --directory "$TMPDIR" ./usr ;;
+  --control) mkdir -p "$3" && echo 'libpng 16 libpng16-16' >"$3/shlibs" ;;
+esac
 END
 }
+export TMPDIR=$place
 arm64_machine
-run aarch64-root
-expect "a folder for arm64" 0 'build/aarch64-root: 1 package'
+run foreign-root
+expect "a folder for arm64" 0 'build/arm64-root: 1 package'
 output=$(readlink "$folder/usr/lib/libm.so")
 expect "... whose links stay inside" 0 '^\.\./\.\./lib/libm\.so\.6$'
+output=$(cat "$folder/var/lib/dpkg/info/libpng-dev:arm64."{list,shlibs})
+expect "... and whose libraries dpkg-shlibdeps can ask about" 0 "^$folder/usr/lib/libpng.a"
 calls 'Dir::State=.*APT::Architecture=arm64 .*--download-only install .*libusb-1.0-0-dev.* umockdev$'
 expect "... with records of its own, and nothing installed" 0 '^1$'
 calls ' install '
 expect "... in one go" 0 '^1$'
-run aarch64-root
+run foreign-root
 expect "the second time there is nothing to fetch" 0 ""
-run aarch64-root --renew
-expect "--renew fetches again" 0 'build/aarch64-root: 1 package'
+run foreign-root --renew
+expect "--renew fetches again" 0 'build/arm64-root: 1 package'
 arm64_machine
 shim dpkg-deb <<<'exit 2'
-run aarch64-root
+run foreign-root
 expect "a package that does not unpack" 1 'cannot unpack .*libpng-dev_1_arm64.deb'
-run aarch64-root
+run foreign-root
 expect "... leaves no folder that would pass for whole" 1 'cannot unpack'
 arm64_machine
 shim apt-get <<'END'
 echo "E: Unable to locate package umockdev"
 exit 100
 END
-run aarch64-root
+run foreign-root
 expect "an archive without arm64" 1 'does not get these packages for arm64'
-run aarch64-root umockdev
-expect "aarch64-root takes no packages" 2 "unknown argument 'umockdev'"
+run foreign-root umockdev
+expect "foreign-root takes no packages" 2 "unknown processor 'umockdev'"
+run package toaster
+expect "package refuses an unknown processor" 2 "unknown processor 'toaster'"
+run check-package toaster
+expect "check-package refuses an unknown processor" 2 "unknown processor 'toaster'"
 
 # libgpiod 2 beside the installed one, from the archive that has the machine's own suite.
 archive() {

@@ -16,7 +16,7 @@ constexpr std::string_view not_on_the_frame_path =
     "any regex memory_resource new cstdlib stdlib.h thread mutex shared_mutex condition_variable future coroutine";
 
 // "Who may include whom": the house's table, a row a folder.
-constexpr std::array<FolderRule, 30> rules{{
+constexpr std::array<FolderRule, 32> rules{{
     {"hal", "hal", "tl-expected", false, none, false,
      "hal is contracts only: the standard library and tl::expected, no other folder, no OS header"},
 
@@ -46,10 +46,13 @@ constexpr std::array<FolderRule, 30> rules{{
     {"calib", "hal recon recon/core calib", "Eigen", false, none, false,
      "calib: hal and recon (Eigen for estimators), never drivers, sim, firmware or the eye file's SQLite"},
 
-    {"firmware/pipeline", "hal recon recon/core firmware/pipeline", none, false, none, false,
-     "firmware/pipeline: hal and recon, never calib, drivers or sim"},
+    {"firmware/pipeline", "hal recon recon/core firmware/pipeline", none, true, none, false,
+     "firmware/pipeline: hal, recon and OS headers (a mutex that inherits priority), never calib, drivers or sim"},
     {"firmware/supervisor", "hal recon recon/core firmware/pipeline firmware/supervisor", none, false, none, false,
      "firmware/supervisor: hal, recon and the pipeline it watches"},
+    {"firmware/service", "hal firmware/files firmware/supervisor firmware/service", "libsystemd", true, none, false,
+     "firmware/service: hal, firmware/files, the supervisor's contract, libsystemd and OS headers"},
+    {"firmware/realtime", "hal firmware/realtime", none, true, none, false, "firmware/realtime: hal and OS headers"},
     {"firmware/bare_metal", "recon/core firmware/bare_metal", none, false, not_on_the_frame_path, false,
      "firmware/bare_metal: recon/core and the standard library without I/O, exceptions and heap"},
     {"firmware/files", "hal recon recon/core firmware/files", "libpng xxhash", true, none, false,
@@ -61,10 +64,10 @@ constexpr std::array<FolderRule, 30> rules{{
     {"firmware/eye",
      "hal recon recon/core calib calib/eye_file sim drivers/protocol drivers/frontend drivers/device drivers/transport "
      "firmware/files "
-     "firmware/pipeline firmware/text firmware/eye",
+     "firmware/pipeline firmware/realtime firmware/supervisor firmware/text firmware/eye",
      "toml++ fmt xxhash", false, none, false,
      "firmware/eye: hal, recon, calib and its eye file, sim, drivers, firmware/files, text and pipeline (its "
-     "correction), toml++, fmt, xxhash"},
+     "correction), what realtime and supervisor are asked for, toml++, fmt, xxhash"},
     {"firmware/operating_points",
      "hal recon recon/core firmware/eye firmware/files firmware/pipeline firmware/text firmware/operating_points",
      "fmt nlohmann-json xxhash", false, none, false,
@@ -99,7 +102,7 @@ constexpr std::array<FolderRule, 30> rules{{
     {"tools", none, none, false, none, false, "tools hold scripts; a program is a subcommand of compueye"},
 }};
 
-constexpr std::array<Library, 17> known_libraries{{
+constexpr std::array<Library, 18> known_libraries{{
     {"tl-expected", "tl/expected.hpp", "tl::expected"},
     {"Eigen", "Eigen/ unsupported/Eigen/", "Eigen3::Eigen"},
     {"Spectra", "Spectra/", "Spectra::Spectra"},
@@ -116,6 +119,7 @@ constexpr std::array<Library, 17> known_libraries{{
     {"hidapi", "hidapi/ hidapi.h", "PkgConfig::HIDAPI"},
     {"SDL2", "SDL.h SDL2/", "PkgConfig::SDL2"},
     {"umockdev", "umockdev.h", "PkgConfig::UMOCKDEV"},
+    {"libsystemd", "systemd/", "PkgConfig::SYSTEMD"},
     {"libgpiod", "gpiod.h gpiod.hpp gpiodcxx/", "PkgConfig::GPIOD gpiod2"},
 }};
 

@@ -112,14 +112,16 @@ class Grid {
     return sim::plan_effects({settings.board, scene, preview}, sim::Sensitivity::of_small_eye());
   }
 
-  /// Over frames spread over the scene's duration, or over the hour that bounds look at.
+  /// Over frames spread over the scene's duration and over the hour of drift that bounds look at.
   [[nodiscard]] Difference between(sim::SimulatedEye& a, sim::SimulatedEye& b) {
-    const double duration_s = a.settings().scenes[0].duration_s;
-    const double looked_at = (duration_s > 0.0 ? duration_s : 3600.0) * board_.source.frame_rate_hz;
+    const sim::Scene& scene = a.settings().scenes[0];
+    const double judged_s = scene.seconds_to_judge();
     Difference found;
     double squares = 0.0;
     for (std::uint64_t k = 0; k < frames; ++k) {
-      const auto f = static_cast<std::uint64_t>((static_cast<double>(k) + 0.37) / frames * looked_at);
+      const double share = (static_cast<double>(k) + 0.37) / frames;
+      const double rounds = std::floor(share * (scene.seconds_of_drift() / judged_s - 1.0));
+      const auto f = static_cast<std::uint64_t>((rounds + share) * judged_s * board_.source.frame_rate_hz);
       const auto of_a = levels_of(a, f), of_b = levels_of(b, f);
       for (std::size_t m = 0; m < of_a.size(); ++m) squares += std::pow(of_a[m] - of_b[m], 2);
       found.nmse += change(of_a, of_b) / static_cast<double>(frames);

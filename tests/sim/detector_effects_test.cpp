@@ -83,9 +83,8 @@ TEST_CASE("dark current is charge over time and doubles every eight degrees") {
 
 TEST_CASE("temperature drifts gains and dark current with the time, from what it is at the start") {
   EffectRig rig(2, 2, 1000.0);
-  rig.scene.duration_s = 80.0;
-  rig.board.frame_rate_hz = 1.0;
-  rig.board.detector.warming_c_per_s = 0.1;
+  rig.board.frame_rate_hz = 1.0 / 45.0;  // 80 frames an hour
+  rig.board.detector.warming_c_per_s = 0.1 / 45.0;
   CHECK(rig.called("temperature").empty());
   rig.board.detector.gain_per_c = 0.001;
   const auto frames = rig.play({"temperature"}, 81);
@@ -98,6 +97,20 @@ TEST_CASE("temperature drifts gains and dark current with the time, from what it
   // 5 LSB at 25 degrees, 10 LSB at 33.
   CHECK(rig.play({"temperature", "dark_current"}, 81)[80][0] == doctest::Approx(1010.0));
   check_bound(rig, "temperature", rig.change({"temperature"}, 80));
+}
+
+TEST_CASE("a sensor warms on while a scene begins anew") {
+  EffectRig rig(2, 2, 1000.0);
+  rig.scene.duration_s = 0.05;
+  rig.board.frame_rate_hz = 0.01;
+  rig.board.detector.warming_c_per_s = 0.02;
+  rig.board.detector.gain_per_c = 0.001;
+  check_bound(rig, "temperature", rig.change({"temperature"}, 36));
+  rig.board.detector.gain_per_c = 0.01;
+  rig.board.detector.electrons_per_lsb = 10.0;
+  rig.board.detector.full_well_e = 14000.0;
+  // Up to 1720 LSB; cut off beyond 1400, in the last .444 of the hour.
+  check_bound(rig, "full_well", 320.0 * std::sqrt(0.444 / 3.0));
 }
 
 TEST_CASE("shot noise is Poisson's: variance is the mean over electrons per LSB, and levels are whole electrons") {

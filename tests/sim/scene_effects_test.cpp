@@ -274,6 +274,8 @@ TEST_CASE("the lamp drifts linearly in time") {
   CHECK(frames[0][0] == 1000.0);
   CHECK(frames[180][3] == doctest::Approx(990.0));
   check_scene_bound(rig, "lamp_drift", rig.change({"lamp_drift"}, 180));
+  rig.scene.duration_s = 0.05;  // the lamp does not begin anew with the scene
+  check_scene_bound(rig, "lamp_drift", rig.change({"lamp_drift"}, 360));
   rig.scene.surfaces[0].shines = true;
   CHECK(rig.called("lamp_drift").empty());
 }

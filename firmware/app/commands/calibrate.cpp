@@ -287,7 +287,7 @@ Result<void> calibrate(const CalibrateRequest& o, Session& session) {
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<CalibrateRequest>();
-  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8-built").required();
+  options.board(o->board, "boards/sim-8x8-built").required();
   options.add("--eye", o->eye, ".eye file that the session goes into; it is made where there is none").required();
   options.add("--plan", o->plan, ".toml file of what is captured (default: see docs/calibration.md)");
   options.add("--scene", o->scene, ".toml file of what a simulated display is like");

@@ -148,7 +148,7 @@ Result<void> run_compare(const CompareRequest& o, Session& session) {
 }
 
 void add_samples(OptionList& options, CompareRequest& o) {
-  options.add("--board", o.board, "folder of the board, such as boards/sim-8x8");
+  options.board(o.board);
   options.scene(o.scene, o.seed);
   options.flag("--exact", o.exact,
                "y = A x + n with the very A that is inverted, instead of the simulated eye: an inverse crime, for "

@@ -84,7 +84,7 @@ Result<void> conformance(const ConformanceRequest& o, Session& session) {
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<ConformanceRequest>();
-  options.add("--bus", o->bus, "how the eye is attached (default: usb)").where(one_of(bus_names()));
+  options.add("--bus", o->bus, "how the eye is attached (default: usb)").among(bus_names());
   options.add("--serial", o->serial, "which eye (default: the first one there is)");
   options.add("--port", o->port, "device file of a UART or a pseudo-terminal, instead of a bus").excludes("--bus");
   options.at("--port").excludes("--serial");

@@ -10,6 +10,7 @@
 
 #include "firmware/app/command.hpp"
 #include "firmware/eye/source_kinds.hpp"
+#include "firmware/files/shared_folders.hpp"
 #include "firmware/text/words.hpp"
 #include "hal/try.hpp"
 
@@ -112,18 +113,30 @@ Figures devices_report(const AttachedEyes& attached, const std::string& boards,
 namespace {
 
 struct DevicesRequest {
-  std::string boards = "boards";
+  std::string boards;
 };
 
+/// The one that is asked for, else ./boards or the machine's.
+std::string folder_of(const DevicesRequest& request) {
+  if (!request.boards.empty()) return request.boards;
+  std::error_code ignored;
+  std::vector<std::string> folders = shared_folders("boards");
+  folders.insert(folders.begin(), "boards");
+  const auto there = std::find_if(folders.begin(), folders.end(),
+                                  [&](const std::string& each) { return fs::is_directory(each, ignored); });
+  return there == folders.end() ? folders.front() : *there;
+}
+
 hal::Result<void> list_devices(const DevicesRequest& request, Session& session) {
-  const auto listed = TRY(list_boards(request.boards));
+  const std::string boards = folder_of(request);
+  const auto listed = TRY(list_boards(boards));
   const AttachedEyes attached = list_attached_eyes(session.clock());
-  return session.print(devices_report(attached, request.boards, listed));
+  return session.print(devices_report(attached, boards, listed));
 }
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<DevicesRequest>();
-  options.add("--boards", o->boards, "folder that holds the boards (default: boards)");
+  options.add("--boards", o->boards, "folder that holds the boards (default: boards, else those that are installed)");
   options.json("print one object and nothing else on stdout");
   return action_of(o, list_devices);
 }

@@ -64,7 +64,7 @@ Result<void> examine(const DoctorRequest& o, Session& session) {
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<DoctorRequest>();
-  options.add("--board", o->board, "folder of the board, such as boards/rpi4-spi-mcp3208").required();
+  options.board(o->board, "boards/rpi4-spi-mcp3208").required();
   options.add("--deadline", o->deadline_ms, "age in ms that a picture may have: whether this machine's points meet it");
   options.add("--frames", o->frames, "of the eye that the link is judged by (default: 200)");
   options.json("print one object and nothing else on stdout");

@@ -50,6 +50,8 @@ class FrameKeeper final : public FrameObserver {
     status_.misfit_is(misfit);
     status_.left_out_are(left_out);
   }
+  /// LiveStatus::picture_is().
+  void picture_is(PictureAge age) noexcept { status_.picture_is(age); }
 
  private:
   [[nodiscard]] std::span<float> slot(std::size_t index) noexcept;

@@ -80,9 +80,7 @@ Result<void> import_rows(const ImportRequest& o, Session& session) {
 Action declare(OptionList& options) {
   auto o = std::make_shared<ImportRequest>();
   options.add("matrix", o->matrix, "A, (M, N): .npy or .mtx, in fully seen white pixels").required();
-  options.add("--board", o->board, "folder of the board whose eye it is of, such as boards/sim-8x8")
-      .required()
-      .type("DIR");
+  options.board(o->board).required().type("DIR");
   options.add("--eye", o->eye, "the eye file that gets it as its newest estimate; made where there is none")
       .required()
       .type("FILE");

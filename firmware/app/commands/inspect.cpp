@@ -19,6 +19,7 @@
 #include "firmware/files/npy.hpp"
 #include "firmware/files/npy_header.hpp"
 #include "firmware/files/response_file.hpp"
+#include "firmware/files/shared_folders.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -91,7 +92,8 @@ Result<void> add_figures(const InspectRequest& o, const recon::Progress& progres
   const fs::path path(o.what);
   const std::string ending = path.extension().string();
   std::error_code error;
-  if (fs::is_directory(path, error) || ending == ".toml") return inspect_board(o, progress, figures);
+  const std::string board = given_or_shared(o.what, "boards");
+  if (fs::is_directory(board, error) || ending == ".toml") return inspect_board(o, progress, figures);
   if (ending == ".npy") return inspect_array(o, progress, figures);
   if (ending == ".mtx") return inspect_matrix(o, progress, figures);
   if (ending == ".eye") {
@@ -146,7 +148,7 @@ Action declare(OptionList& options) {
            "--size "
            "is given and there are two axes")
       .type("KIND")
-      .where(one_of({"auto", "array", "response"}));
+      .among({"auto", "array", "response"});
   options.add("--html", o->html, "write everything that an .eye file holds as one page to look at and to print")
       .type("FILE")
       .output();

@@ -6,7 +6,7 @@ void add_light_options(OptionList& options, LightWanted& light) {
   options
       .add("--light", light.kind,
            "what shows the patterns: " + choices(light_names()) + " (default: sim for a simulated eye, else display)")
-      .where(one_of(light_names()));
+      .among(light_names());
   options.add("--monitor", light.monitor, "number of the display's monitor, from 0");
   options.flag("--window", light.in_window, "a window on it instead of all of it");
 }

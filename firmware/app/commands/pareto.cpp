@@ -117,7 +117,7 @@ std::string footer() {
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<ParetoRequest>();
-  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8");
+  options.board(o->board);
   options.settings("pareto", o->overrides);
   options.add("--out", o->out, "folder for the CSV and the plots; made when missing (default: none)")
       .output(Writes::folder);

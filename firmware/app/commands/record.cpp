@@ -144,7 +144,7 @@ Result<void> record(const RecordRequest& o, Session& session) {
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<RecordRequest>();
-  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8");
+  options.board(o->board);
   options.add("--out", o->out, "the recording, such as eye.rec; an older one is never overwritten").output();
   options.add("--frames", o->frames, "end after so many; 0: until stopped (default: the board's frames_per_scene)");
   options.add("--seconds", o->seconds, "end after so long").excludes("--frames");

@@ -88,7 +88,7 @@ Result<void> write_nominal(const ResponseRequest& o, Session& session) {
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<ResponseRequest>();
-  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8").required().type("DIR");
+  options.board(o->board).required().type("DIR");
   options
       .add("--out", o->out,
            "A as .mtx (sparse, exact) or .npy (dense float32, at most 1 GiB); without it only the figures")

@@ -1,10 +1,8 @@
 #include "firmware/app/commands/run.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -15,8 +13,10 @@
 #include "firmware/app/commands/frame_keeper.hpp"
 #include "firmware/app/commands/run_checks.hpp"
 #include "firmware/app/commands/run_outputs.hpp"
+#include "firmware/app/commands/run_progress.hpp"
 #include "firmware/app/commands/run_report.hpp"
 #include "firmware/app/commands/run_source.hpp"
+#include "firmware/app/commands/run_supervision.hpp"
 #include "firmware/app/option_list.hpp"
 #include "firmware/eye/channel_detector.hpp"
 #include "firmware/eye/ready_eye.hpp"
@@ -32,7 +32,6 @@
 #include "firmware/pipeline/fit_watch.hpp"
 #include "firmware/pipeline/pipeline.hpp"
 #include "firmware/pipeline/reconstructor_solver.hpp"
-#include "firmware/sinks/live_status.hpp"
 #include "hal/try.hpp"
 
 namespace compueye::firmware {
@@ -56,9 +55,17 @@ class ScreenLease {
 /// From the board to the report, step by step; each step is a member, and what the next ones need stays here.
 class BoardRun {
  public:
-  BoardRun(const RunOptions& options, Session& session) : options_(options), session_(session) {}
+  BoardRun(const RunOptions& options, Session& session) : options_(options), session_(session), supervision_(session) {}
 
   Result<void> run() {
+    auto done = run_all();
+    supervision_.end(!done);
+    return done;
+  }
+
+ private:
+  Result<void> run_all() {
+    TRY(supervision_.wait_for_turn());
     TRY(prepare());
     TRY(make_eye());
     TRY(make_ready());
@@ -71,7 +78,6 @@ class BoardRun {
     return verdict();
   }
 
- private:
   Result<void> prepare();
   Result<void> make_eye();
   Result<void> choose_eye(const recon::Progress& ask);
@@ -84,14 +90,13 @@ class BoardRun {
   [[nodiscard]] bool chooses_lambda() const;
   Result<void> run_pipeline();
   Result<void> run_with(FrameSolver& solver, const RunSinks& sinks, FrameObserver& observer);
-  [[nodiscard]] std::function<void()> how_far(TerminalSink* screen);
   Result<void> compare();
   Result<void> measure_quality();
   Result<void> write_sheet();
   Result<void> print();
   [[nodiscard]] Result<void> verdict() const;
   void note(const std::string& sentence);
-  [[nodiscard]] PipelineSettings pipeline_settings() const;
+  [[nodiscard]] PipelineSettings pipeline_settings();
   /// What is in front of an eye on a cable is known only when it is named.
   [[nodiscard]] bool knows_scene() const {
     return options_.knows_scene() && (board_.source.simulated() || !options_.scene.name.empty());
@@ -103,6 +108,7 @@ class BoardRun {
 
   const RunOptions& options_;
   Session& session_;
+  RunSupervision supervision_;
   Board board_;
   std::optional<PictureFolder> folder_;
   sim::Scene scene_;
@@ -126,6 +132,7 @@ Result<void> BoardRun::prepare() {
   board_ = TRY(load_board(options_.board));
   TRY(options_.overrides.apply(board_));
   TRY(check_wish(options_, board_));
+  supervision_.board_is(board_);
   folder_ = TRY(claim_outputs(options_));
   if (!options_.record.empty()) TRY(check_new_recording(options_.record));
   TRY(need(options_.sheet.empty() || knows_scene(), "--sheet",
@@ -247,7 +254,7 @@ Result<void> BoardRun::choose_lambda(const TrialFrame& frame) {
   return {};
 }
 
-PipelineSettings BoardRun::pipeline_settings() const {
+PipelineSettings BoardRun::pipeline_settings() {
   PipelineSettings settings;
   settings.pacing = options_.waits_for_frames() ? Pacing::every_frame : Pacing::newest_wins;
   settings.frames = frames();
@@ -258,6 +265,7 @@ PipelineSettings BoardRun::pipeline_settings() const {
   // A source finds out in five periods that it has to recover.
   settings.silence_limit_ns += static_cast<std::int64_t>(6e9 / std::max(board_.source.frame_rate_hz, 1e-3));
   settings.correction = correction_settings(board_, eye().sees(), eye().measured());
+  supervision_.join(settings);
   return settings;
 }
 
@@ -284,12 +292,16 @@ Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, Fram
   std::optional<ChannelWatch> channels;
   if (board_.find_dead) channels.emplace(solver, eye().reconstructor(), channel_detector(board_, eye()));
   FrameSolver& watched = channels ? static_cast<FrameSolver&>(*channels) : solver;
+  FrameObserver& pictures = supervision_.observe(fit);
   auto pipeline =
-      TRY(Pipeline::create(pipeline_settings(), source_->source(), watched, *sinks.all, session_.clock(), &fit));
+      TRY(Pipeline::create(pipeline_settings(), source_->source(), watched, *sinks.all, session_.clock(), &pictures));
   std::optional<RunWatch> watch;
-  watch.emplace([this, &fit, &channels, tell = how_far(sinks.screen), told = false]() mutable {
+  watch.emplace([this, &fit, &channels, tell = run_progress(session_, keeper_->status(), frames(), sinks.screen),
+                 told = false]() mutable {
     keeper_->source_is(source_->source().faults(), source_->source().recovering());
     keeper_->response_is(fit.misfit(), channels ? channels->count() : 0);
+    supervision_.look(keeper_->status());
+    keeper_->picture_is(supervision_.picture());
     tell();
     if (checks_) checks_->tell();
     const std::string failure = told ? std::string() : source_->failure();
@@ -300,6 +312,9 @@ Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, Fram
   report_.summary = pipeline.run(session_.stop_requested());
   watch.reset();
   if (checks_) checks_->tell_all(report_);
+  report_.picture = supervision_.figures();
+  report_.interruptions = supervision_.interruptions();
+  for (const std::string& refused : supervision_.refusals()) note(refused);
   report_.fit = fit.summary();
   if (channels) report_.channels = channels->detector();
   for (const std::string& sentence : source_->notes()) note(sentence);
@@ -308,27 +323,6 @@ Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, Fram
   }
   if (!options_.record.empty()) report_.files.push_back(options_.record);
   return {};
-}
-
-/// On a terminal a line that is redrawn; elsewhere how the run goes, every few seconds.
-std::function<void()> BoardRun::how_far(TerminalSink* screen) {
-  constexpr std::int64_t every_ns = 5'000'000'000;
-  if (screen != nullptr) return [screen] { screen->tell(); };
-  const LiveStatus& status = keeper_->status();
-  if (::isatty(STDERR_FILENO) == 1 && terminal_can_draw()) {
-    return [this, &status, progress = session_.progress()] {
-      progress(status.recovering() ? "frames, getting the eye back" : "frames", static_cast<double>(status.delivered()),
-               static_cast<double>(frames()));
-    };
-  }
-  return [this, &status, line = StatusLine(status), due_ns = session_.clock().now_ns() + every_ns]() mutable {
-    const std::int64_t now_ns = session_.clock().now_ns();
-    std::array<char, 160> room{};
-    const std::string_view text = line.print(now_ns, room);
-    if (now_ns < due_ns) return;
-    due_ns = now_ns + every_ns;
-    session_.say(fmt::format("{} frames{}{}", status.delivered(), text.empty() ? "" : ", ", text));
-  };
 }
 
 Result<void> BoardRun::measure_quality() {

@@ -51,7 +51,7 @@ void add_scene_options(OptionList& options, RunOptions& o) {
            "have the pictures compared with it")
       .excludes("--seed");
   options.add("--pace", o.replay_pace, "of a replay: fast (default; every frame is waited for) or recorded")
-      .where(one_of({"fast", "recorded"}));
+      .among({"fast", "recorded"});
   options.add("--record", o.record, "file for the raw frames besides, for --replay; never overwritten").output();
   options
       .flag("--stop-if-unrecorded", o.stop_if_unrecorded,
@@ -101,17 +101,17 @@ void add_check_options(OptionList& options, RunOptions& o) {
 
 void add_output_options(OptionList& options, RunOptions& o) {
   options.add("--out", o.out, "folder for the pictures; made when missing").output(Writes::folder);
-  options.add("--format", o.format, sink_formats_text()).where(one_of(sink_formats()));
+  options.add("--format", o.format, sink_formats_text()).among(sink_formats());
   options.add("--sheet", o.sheet, "contact sheet PNG: scene, conventional eye, reconstruction, error").output();
   options.add("--report", o.report, "file for the object that --json prints").output();
   options.add("--table", o.table, "print a table instead: its header only, this run's row, or both")
-      .where(one_of({"header", "row", "both"}));
+      .among({"header", "row", "both"});
   options.json("print one object with every figure and nothing else on stdout");
 }
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<RunOptions>();
-  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8");
+  options.board(o->board);
   options.add("--frames", o->frames,
               "end after so many delivered pictures; 0: run until stopped (default: the board's frames_per_scene)");
   add_scene_options(options, *o);

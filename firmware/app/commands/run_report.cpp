@@ -217,6 +217,10 @@ void tell_frames(Figures& f, const RunReport& report) {
       "[, {health.dark_frames} dark][, {health.untrusted_times} with an untrusted time]"
       "[, {health.config_mismatches} with another configuration][, {health.read_timeouts} reads timed out]"
       "[; {health.masked_channels_min} to {health.masked_channels_max} channels masked]\n");
+  if (report.interruptions > 0) {
+    f.tell(
+        "picture: held or taken away {picture.interruptions} times, {picture.longest_gap_s:duration} at the longest\n");
+  }
   if (report.channels && report.channels->found() > 0) {
     f.tell(
         "left out as dead, stuck or hot: {left_out.ommatidia:count} ommatidia[ ({left_out.ommatidia})]"
@@ -327,6 +331,7 @@ Figures figures_of(const RunReport& report, const Board& board, const ReadyEye& 
             {"write_ms", times_figures(s.write)},
             {"deadline", deadline_figures(report)},
             {"health", health_figures(s)},
+            {"picture", report.picture},
             {"source_counters", counter_figures(s.source_counters)},
             {"faults", hal::faults_in(s.source_counters)},
             {"quality", value_of(report.quality)},

@@ -46,6 +46,8 @@ struct RunReport {
   std::size_t measured = 0;
   std::optional<PictureQuality> last_quality;  ///< of the last delivered frame
   std::optional<PictureQuality> conventional;  ///< of one frame
+  Figures picture;                             ///< how long it was live, held, gone; what real time was granted
+  std::uint64_t interruptions = 0;             ///< times it was held or gone
   std::optional<Figures> checks;               ///< of the eye, where they were asked for
   std::vector<std::string> files;              ///< what was written
   std::vector<std::string> notes;

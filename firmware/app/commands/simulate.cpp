@@ -262,7 +262,7 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<SimulateRequest>();
-  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8").required();
+  options.board(o->board).required();
   options.scene(o->scene, o->seed);
   options.add("--out", o->out, ".npy file for the samples, (M,) or (frames, M)").output();
   options.add("--frames", o->frames, "how many (default 1)");

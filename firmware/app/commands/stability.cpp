@@ -98,7 +98,7 @@ Examples:
 
 Action declare(OptionList& options) {
   auto o = std::make_shared<StabilityRequest>();
-  options.add("--board", o->board, "folder of the board, such as boards/sim-8x8");
+  options.board(o->board);
   options.add("--size", o->size, "rows and columns of the picture behind --response").type("HxW").where(picture_size());
   options.add("--response", o->response, "any other A instead: .npy or .mtx")
       .type("FILE")
@@ -109,11 +109,11 @@ Action declare(OptionList& options) {
   options
       .add("--basis", o->basis,
            choices(recon::words_of(recon::basis_names())) + " (default: the board's; identity for a response)")
-      .where(one_of(recon::words_of(recon::basis_names())));
+      .among(recon::words_of(recon::basis_names()));
   options
       .add("--constraint", o->constraint,
            choices(recon::words_of(recon::constraint_names())) + " (default: the board's; none for a response)")
-      .where(one_of(recon::words_of(recon::constraint_names())));
+      .among(recon::words_of(recon::constraint_names()));
   options.add("--iterations", o->iterations, "of each run (default 300)");
   options.add("--seed", o->seed, "of picture and noise (default 1)");
   options.add("--out", o->out, "folder for the CSV and the plot; made when missing (default: none)")

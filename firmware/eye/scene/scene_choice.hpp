@@ -13,7 +13,9 @@ namespace compueye::firmware {
 
 /// Which scene a command line asks for.
 struct SceneChoice {
-  std::string name;                   ///< a built-in scene, a PNG or a scene file; empty: the board's default
+  /// A built-in scene, a PNG or a scene file, or the name of one in shared_folders("scenes"); empty: the board's
+  /// default.
+  std::string name;
   std::uint64_t seed = 0;             ///< which drawing of a built-in scene
   std::optional<double> distance_mm;  ///< from the lens tip, > 0; absent: on the object plane
 };

@@ -92,7 +92,8 @@ std::vector<SettingOf<Whole>> make_scene_settings() {
            .within(length_mm)
            .stored([](Whole& whole, const V& v) { whole.for_plane_mm = pair_of(v); },
                    [](const Whole&) -> std::optional<V> { return std::nullopt; }),
-       field<&Whole::scene, &Scene::duration_s>("duration_s", "after which it begins anew; 0: it goes on for ever")
+       field<&Whole::scene, &Scene::duration_s>(
+           "duration_s", "after which it begins anew, but for lamps and sensors; 0: it goes on for ever")
            .within(seconds)
            .otherwise(V{0.0})});
   add<Whole>(

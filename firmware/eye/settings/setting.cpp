@@ -17,7 +17,7 @@ namespace {
 
 using hal::ErrorCode;
 
-constexpr std::array<Section, 9> all_sections{{
+constexpr std::array<Section, 11> all_sections{{
     {"board", "What this board is called."},
     {"eye", "The eye: where each ommatidium sits, where it looks and how wide it sees."},
     {"object", "The plane the eye looks at, and the picture that is reconstructed on it."},
@@ -27,6 +27,8 @@ constexpr std::array<Section, 9> all_sections{{
     {"wiring", "How the converters of an eye of kind \"spi\" hang on this machine; of no other kind."},
     {"reconstruction", "How a frame is solved."},
     {"scene", "What a simulated eye sees when the command line names nothing else."},
+    {"health", "When a run says that its picture is old, or that it needs a restart."},
+    {"realtime", "What is asked of the operating system; what it refuses is said, and the run goes on without."},
 }};
 
 struct Quote {
@@ -266,6 +268,7 @@ std::span<const Setting> settings() {
     for (Setting& row : wiring_settings()) all.push_back(std::move(row));
     for (Setting& row : as_built_settings()) all.push_back(std::move(row));
     for (Setting& row : reconstruction_settings()) all.push_back(std::move(row));
+    for (Setting& row : service_settings()) all.push_back(std::move(row));
     return all;
   }();
   return rows;
