@@ -154,7 +154,7 @@ expect "apt-get that claims success" 1 'still not installed'
 machine "$everything"
 run install-packages --check nonsense
 expect "an unknown group" 2 "no package group 'nonsense'"
-for script in check-package count-instructions foreign-root install-packages build-preset demo libgpiod2 mcu package test tidy; do
+for script in check-package count-instructions foreign-root hil-kernel hil-kernel-root install-packages build-preset demo libgpiod2 mcu package test tidy; do
   run "$script" --help
   expect "$script --help has an example" 0 "^Example: tools/$script"
   run "$script" --nonsense

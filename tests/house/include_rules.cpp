@@ -102,7 +102,7 @@ constexpr std::array<FolderRule, 32> rules{{
     {"tools", none, none, false, none, false, "tools hold scripts; a program is a subcommand of compueye"},
 }};
 
-constexpr std::array<Library, 18> known_libraries{{
+constexpr std::array<Library, 19> known_libraries{{
     {"tl-expected", "tl/expected.hpp", "tl::expected"},
     {"Eigen", "Eigen/ unsupported/Eigen/", "Eigen3::Eigen"},
     {"Spectra", "Spectra/", "Spectra::Spectra"},
@@ -118,6 +118,7 @@ constexpr std::array<Library, 18> known_libraries{{
     {"libusb", "libusb-1.0/ libusb.h", "PkgConfig::LIBUSB"},
     {"hidapi", "hidapi/ hidapi.h", "PkgConfig::HIDAPI"},
     {"SDL2", "SDL.h SDL2/", "PkgConfig::SDL2"},
+    {"libfuse", "cuse_lowlevel.h fuse_lowlevel.h", "PkgConfig::FUSE3"},
     {"umockdev", "umockdev.h", "PkgConfig::UMOCKDEV"},
     {"libsystemd", "systemd/", "PkgConfig::SYSTEMD"},
     {"libgpiod", "gpiod.h gpiod.hpp gpiodcxx/", "PkgConfig::GPIOD gpiod2"},

@@ -1,5 +1,5 @@
 // Whether every frame of a recording is, code by code, one of another recording: the one with its number, or with
-// --in-order the next one that is alike, for sources that count frames from another start.
+// --in-order the next one or the same again that is alike, for sources that count frames from another start.
 
 #include <cstdint>
 #include <iostream>
@@ -51,7 +51,7 @@ Comparison compare(const std::vector<Frame>& frames, const std::vector<Frame>& r
     }
     const bool same = found < reference.size() && reference[found].codes == frame.codes;
     ++(same ? result.same : result.other);
-    if (same) at = found + 1;
+    if (same) at = found;  // a source that samples when asked may see one conversion twice
   }
   return result;
 }
