@@ -5,11 +5,11 @@ set(COMPUEYE_PAGES "" CACHE PATH "Manual and completion, written by a compueye o
 
 install(TARGETS compueye RUNTIME)
 install(DIRECTORY boards/ DESTINATION ${CMAKE_INSTALL_DATADIR}/compueye/boards
-        PATTERN toolchains EXCLUDE PATTERN microcontrollers EXCLUDE PATTERN .cache EXCLUDE PATTERN *.rules EXCLUDE)
+        PATTERN toolchains EXCLUDE PATTERN microcontrollers EXCLUDE PATTERN systemd EXCLUDE PATTERN .cache EXCLUDE PATTERN *.rules EXCLUDE)
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/compueye/scenes)
 install(FILES boards/60-compueye.rules DESTINATION lib/udev/rules.d)
 install(FILES packaging/sysusers.conf DESTINATION lib/sysusers.d RENAME compueye.conf)
-file(GLOB units CONFIGURE_DEPENDS firmware/service/units/*)
+file(GLOB units CONFIGURE_DEPENDS boards/systemd/*.service)
 install(FILES ${units} DESTINATION lib/systemd/system)
 
 set(pages ${COMPUEYE_PAGES})
