@@ -153,7 +153,7 @@ void DeviceEmulator::give_to_link(std::int64_t ready_ns, std::span<std::byte> pa
   if (now_wrong_.bit_errors > 0) {
     --now_wrong_.bit_errors;
     ++truth_.packets_damaged;
-    const std::uint64_t bit = random_() % (8 * packet.size());
+    const auto bit = static_cast<std::size_t>(random_() % (8 * packet.size()));
     packet[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
   }
   if (now_wrong_.short_packets > 0) {

@@ -12,7 +12,7 @@ WaitingFrames::WaitingFrames(std::size_t capacity, std::size_t channels) : slots
 WaitingFrame* WaitingFrames::claim(bool wait) noexcept {
   std::unique_lock lock(mutex_);
   if (wait) room_.wait(lock, [this] { return pushed_ - done_ < slots_.size(); });
-  return pushed_ - done_ < slots_.size() ? &slots_[pushed_ % slots_.size()] : nullptr;
+  return pushed_ - done_ < slots_.size() ? &slots_[static_cast<std::size_t>(pushed_ % slots_.size())] : nullptr;
 }
 
 void WaitingFrames::push() noexcept {
@@ -27,7 +27,7 @@ WaitingFrame* WaitingFrames::oldest() noexcept {
   std::unique_lock lock(mutex_);
   filled_.wait(lock, [this] { return closed_ || woken_ || pushed_ > done_; });
   woken_ = false;
-  return pushed_ > done_ ? &slots_[done_ % slots_.size()] : nullptr;
+  return pushed_ > done_ ? &slots_[static_cast<std::size_t>(done_ % slots_.size())] : nullptr;
 }
 
 void WaitingFrames::wake() noexcept {

@@ -85,7 +85,7 @@ class UsbTransferRing {
   void begin_anew();
   void completed(Slot& done) noexcept;
   static void on_completion(libusb_transfer* transfer) noexcept;
-  [[nodiscard]] Slot& slot(std::uint64_t count) { return slots_[count % slots_.size()]; }
+  [[nodiscard]] Slot& slot(std::uint64_t count) { return slots_[static_cast<std::size_t>(count % slots_.size())]; }
   std::size_t copy_out(std::span<std::byte> into) noexcept;
   [[nodiscard]] bool wants_submission() const noexcept;
   [[nodiscard]] hal::Error error_of(int status) const;

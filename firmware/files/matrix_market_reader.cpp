@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -234,7 +235,8 @@ Csr compress(std::vector<Entry> entries, std::int64_t rows) {
   csr.values.reserve(entries.size());
   const auto by_column = [](const Entry& a, const Entry& b) { return a.col < b.col; };
   for (std::size_t m = 0; m + 1 < begin_of_row.size(); ++m) {
-    const auto begin = entries.begin() + begin_of_row[m], end = entries.begin() + begin_of_row[m + 1];
+    const auto begin = entries.begin() + static_cast<std::ptrdiff_t>(begin_of_row[m]);
+    const auto end = entries.begin() + static_cast<std::ptrdiff_t>(begin_of_row[m + 1]);
     // Stable, so that the sum of repeated entries does not depend on how a library sorts.
     if (!std::is_sorted(begin, end, by_column)) std::stable_sort(begin, end, by_column);
     for (auto e = begin; e != end; ++e) {
