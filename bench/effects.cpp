@@ -41,7 +41,7 @@ hal::Result<Mode> timed(const firmware::Board& board, const sim::Scene& scene, s
     std::vector<std::int32_t> codes(static_cast<std::size_t>(board.eye.ommatidia()));
     std::optional<hal::Result<sim::Simulation>> made;
     first.push_back(bench::milliseconds([&] {
-      made = sim::Simulation::create(settings.board, scene, 1, {.mode = mode});
+      made = sim::Simulation::create(settings.board, scene, 1, {.budget = {mode}});
       if (*made) static_cast<void>((*made)->codes(0, codes));
     }));
     if (!*made) return tl::unexpected(made->error());

@@ -46,10 +46,14 @@ Result<std::unique_ptr<SimulatedEye>> SimulatedEye::create(SimulatedEyeSettings 
   std::optional<Simulation> display;
   if (settings.display) {
     Planning planning;
-    planning.mode = PlanMode::called;
+    planning.budget.mode = PlanMode::called;
+    planning.watch = settings.planning.watch;
     display = TRY(Simulation::create(settings.board, *settings.display, settings.seed, planning));
   }
-  settings.planning.measure = nullptr;  // may look at what its caller owns
+  settings.planning.measure = nullptr;  // these may look at what its caller owns
+  settings.planning.watch = nullptr;
+  for (Simulation& simulation : simulations) simulation.watch(settings.watch);
+  if (display) display->watch(settings.watch);
   std::sort(settings.faults.lost_frames.begin(), settings.faults.lost_frames.end());
   return std::unique_ptr<SimulatedEye>(
       new SimulatedEye(std::move(settings), std::move(simulations), std::move(display), clock));
@@ -100,7 +104,7 @@ Result<void> SimulatedEye::show(const hal::Image& picture, double response_s) {
   return {};
 }
 
-bool SimulatedEye::codes_of(std::uint64_t frame, std::int64_t start_ns) {
+Result<bool> SimulatedEye::codes_of(std::uint64_t frame, std::int64_t start_ns) {
   if (!change_) return simulations_[scene_of_frame(frame)].codes(frame, codes_);
   change_->light_at(start_ns, light_);
   return display().codes_of(light_, frame, codes_);
@@ -177,9 +181,12 @@ Result<hal::SampleBlock> SimulatedEye::do_read(std::int64_t deadline_ns) {
 }
 
 Result<hal::SampleBlock> SimulatedEye::deliver(std::int64_t now_ns) {
-  const std::uint64_t frame = next_++;
+  const std::uint64_t frame = next_;
   hal::SampleBlock block;
-  block.flags.saturated = codes_of(frame, paced() ? exposure_start_ns(frame) : now_ns);
+  const auto saturated = codes_of(frame, paced() ? exposure_start_ns(frame) : now_ns);
+  if (!saturated) return hal::timed_out();
+  ++next_;
+  block.flags.saturated = *saturated;
   std::fill(valid_.begin(), valid_.end(), std::uint8_t{1});
   for (const InvalidChannel& fault : settings_.faults.invalid_channels) {
     if (frame < fault.from_frame) continue;

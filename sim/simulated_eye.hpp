@@ -29,6 +29,7 @@ struct SimulatedEyeSettings {
   std::string serial = "sim-0";              ///< names the device and the place of its errors
   std::optional<std::uint64_t> frame_limit;  ///< frames the device makes after a start(), then end_of_stream
   DeviceFaults faults;
+  RenderWatch watch = {};  ///< of the frames after the first, for as long as there is the eye
 };
 
 /// A compound eye without hardware, behind the interface of the real ones.
@@ -37,6 +38,8 @@ struct SimulatedEyeSettings {
 /// t0 + f/rate to t0 + (f+1)/rate; SampleBlock::t_ns is the beginning and the frame can be read from the end on. A full
 /// FIFO loses its oldest frame: the reader sees the frame number jump, the overrun flag and a device_overrun count.
 /// Unpaced, a frame is exposed at the moment of the read and none is lost; t_ns then still grows by at least 1 ns.
+///
+/// A read whose rendering the watch gives up is timed out, and the next one finds the same frame.
 ///
 /// Samples depend on settings and frame number only: not on pacing, on when they are read or on what was lost before.
 /// account().produced counts the frames whose fate is settled; those still in the FIFO are settled by the next read()
@@ -81,7 +84,7 @@ class SimulatedEye final : public hal::SampleSource {
   [[nodiscard]] bool lost_on_the_way(std::uint64_t frame) const noexcept;
   void overwrite_oldest(std::uint64_t finished) noexcept;
   hal::Result<hal::SampleBlock> deliver(std::int64_t now_ns);
-  [[nodiscard]] bool codes_of(std::uint64_t frame, std::int64_t start_ns);
+  [[nodiscard]] hal::Result<bool> codes_of(std::uint64_t frame, std::int64_t start_ns);
   [[nodiscard]] Simulation& display() noexcept { return display_ ? *display_ : simulations_.front(); }
 
   /// A change of light, in signals. A frame is given what there is at its beginning.

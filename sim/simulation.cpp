@@ -34,11 +34,12 @@ hal::Result<void> check_forced(const Scene& scene) {
 }
 
 hal::Result<Plan> plan_of(const Circumstances& circumstances, const Planning& planning) {
-  Plan plan = plan_effects(circumstances, Sensitivity::of_small_eye(), planning.mode);
-  const bool measured = planning.mode == PlanMode::automatic && planning.measure && plan.depends_on_sensitivity();
+  Plan plan = plan_effects(circumstances, Sensitivity::of_small_eye(), planning.budget);
+  const bool measured =
+      planning.budget.mode == PlanMode::automatic && planning.measure && plan.depends_on_sensitivity();
   if (!measured) return plan;
   const Sensitivity sensitivity = TRY(planning.measure(circumstances.scene));
-  return plan_effects(circumstances, sensitivity, planning.mode);
+  return plan_effects(circumstances, sensitivity, planning.budget);
 }
 
 Workings begin(const EyeToSimulate& board, const Scene& scene, std::uint64_t seed) {
@@ -62,9 +63,10 @@ struct Simulation::Parts {
   std::optional<Renderer> renderer;  // made once the scene has its place
   std::vector<double> signals, render, levels;
   std::vector<std::int32_t> stuck;
-  std::vector<double> channel_turn;  // 0 .. 1 of the scan, by channel
-  bool changes = false;              // the scene, as far as it is rendered
-  bool rendered = false;
+  std::vector<double> channel_turn;      // 0 .. 1 of the scan, by channel
+  bool changes = false;                  // the scene, as far as it is rendered
+  std::optional<std::uint64_t> exposed;  // the frame that signals are of
+  RenderWatch watch;
 
   /// What the planned effects make of the scene as it is.
   hal::Result<void> prepare() {
@@ -75,7 +77,7 @@ struct Simulation::Parts {
     }
     changes = workings.render.motion && !workings.scene.still();
     renderer = TRY(Renderer::create(board.eye, board.object, workings.optics, workings.render, workings.scene));
-    rendered = false;
+    exposed.reset();
     return {};
   }
 
@@ -85,36 +87,40 @@ struct Simulation::Parts {
   /// The scene begins anew after its duration; lamps and sensors do not.
   [[nodiscard]] double scene_s(std::uint64_t frame) const noexcept { return scene.own_time_s(start_s(frame)); }
 
-  /// signals = the mean over the instants of the integration, which begins at `t_s`.
-  void integrate(double t_s, std::span<double> into) {
+  /// signals = the mean over the instants of the integration, which begins at `t_s`; part `part` of `parts` of a frame.
+  [[nodiscard]] bool integrate(double t_s, std::span<double> into, int part, int parts) {
     const int n = workings.exposure.instants;
     std::fill(into.begin(), into.end(), 0.0);
     for (int k = 0; k < n; ++k) {
-      renderer->render(t_s + (k + 0.5) / n * board.integration_s(), render);
+      const auto told = [&](double share) { return watch("rendering", (part + (k + share) / n) / parts); };
+      const Renderer::Watch each = watch ? Renderer::Watch(told) : Renderer::Watch();
+      if (!renderer->render(t_s + (k + 0.5) / n * board.integration_s(), render, each)) return false;
       for (std::size_t m = 0; m < into.size(); ++m) into[m] += render[m] / n;
     }
+    return true;
   }
 
   /// Channels at their own times: linear between the times of the scan that are rendered.
-  void integrate_in_turn(double t_s) {
+  [[nodiscard]] bool integrate_in_turn(double t_s) {
     const int n = workings.exposure.scan_instants;
     std::fill(signals.begin(), signals.end(), 0.0);
     for (int k = 0; k < n; ++k) {
-      integrate(t_s + board.detector.scan_s() * k / (n - 1), levels);
+      if (!integrate(t_s + board.detector.scan_s() * k / (n - 1), levels, k, n)) return false;
       for (std::size_t m = 0; m < signals.size(); ++m) {
         signals[m] += std::max(0.0, 1.0 - std::fabs(channel_turn[m] * (n - 1) - k)) * levels[m];
       }
     }
+    return true;
   }
 
-  void expose(std::uint64_t frame) {
-    if (rendered && !changes) return;
-    rendered = true;
-    if (workings.exposure.channels_in_turn) {
-      integrate_in_turn(scene_s(frame));
-    } else {
-      integrate(scene_s(frame), signals);
-    }
+  hal::Result<void> expose(std::uint64_t frame) {
+    if (exposed && (!changes || *exposed == frame)) return {};
+    exposed.reset();
+    const double t_s = scene_s(frame);
+    const bool done = workings.exposure.channels_in_turn ? integrate_in_turn(t_s) : integrate(t_s, signals, 0, 1);
+    if (!done) return hal::fail(hal::ErrorCode::interrupted, scene.name, "was not rendered to the end");
+    exposed = frame;
+    return {};
   }
 
   /// levels = what the converter is given.
@@ -155,7 +161,8 @@ hal::Result<Simulation> Simulation::create(EyeToSimulate board, Scene scene, std
   Parts& p = *parts;
   p.board = std::move(board);
   p.scene = std::move(scene);
-  p.preview = TRY(preview_of(p.board, p.scene));
+  p.watch = planning.watch;
+  p.preview = TRY(preview_of(p.board, p.scene, p.watch));
   p.seed = seed;
   p.plan = TRY(plan_of({p.board, p.scene, p.preview}, planning));
   TRY(p.prepare());
@@ -165,7 +172,8 @@ hal::Result<Simulation> Simulation::create(EyeToSimulate board, Scene scene, std
   for (std::size_t m = 0; m < channels; ++m) {
     p.channel_turn[m] = p.board.detector.turn(static_cast<int>(m), p.board.eye.ommatidia());
   }
-  p.expose(0);
+  TRY(p.expose(0));
+  p.watch = nullptr;  // may look at what its caller owns
   return Simulation(std::move(parts));
 }
 
@@ -190,18 +198,22 @@ const EyeToSimulate& Simulation::board() const noexcept {
 }
 
 std::span<const double> Simulation::noise_free(std::uint64_t frame) {
-  parts_->expose(frame);
+  (void)parts_->expose(frame);
   return parts_->signals;
 }
 
 std::span<const double> Simulation::levels_lsb(std::uint64_t frame) {
-  parts_->expose(frame);
+  (void)parts_->expose(frame);
   parts_->detect(parts_->signals, frame);
   return parts_->levels;
 }
 
-bool Simulation::codes(std::uint64_t frame, std::span<std::int32_t> codes) {
-  parts_->expose(frame);
+void Simulation::watch(RenderWatch watch) {
+  parts_->watch = std::move(watch);
+}
+
+hal::Result<bool> Simulation::codes(std::uint64_t frame, std::span<std::int32_t> codes) {
+  TRY(parts_->expose(frame));
   return codes_of(parts_->signals, frame, codes);
 }
 

@@ -54,7 +54,7 @@ hal::Result<SimulatedBench> SimulatedBench::create(const Board& board, const sim
   bench.clock = std::make_unique<hal::VirtualClock>();
   auto settings = simulated_eye_settings(board, std::move(display), seed);
   settings.frame_rate_hz = board.source.frame_rate_hz;
-  settings.planning.mode = sim::PlanMode::called;
+  settings.planning.budget.mode = sim::PlanMode::called;
   bench.eye = TRY(sim::SimulatedEye::create(std::move(settings), *bench.clock));
   bench.display = std::make_unique<sim::SimulatedDisplay>(*bench.eye, *bench.clock);
   return bench;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "firmware/text/figures.hpp"
@@ -22,6 +23,18 @@ struct PictureQuality {
                                                             const hal::Image& truth) {
   return PictureQuality{TRY(recon::nmse(picture, truth)), TRY(recon::psnr(picture, truth)),
                         TRY(recon::ssim(picture, truth))};
+}
+
+[[nodiscard]] inline bool is_black(const hal::Image& truth) {
+  return std::all_of(truth.pixels.begin(), truth.pixels.end(), [](float v) { return v == 0.0F; });
+}
+
+/// Nothing of a black truth: nothing is near it or far from it, errors have no share of it.
+using QualityIfLit = std::optional<PictureQuality>;
+[[nodiscard]] inline hal::Result<QualityIfLit> quality_if_lit(const recon::PictureView& picture,
+                                                              const hal::Image& truth) {
+  if (is_black(truth)) return QualityIfLit();
+  return QualityIfLit(TRY(quality_of(picture, truth)));
 }
 
 [[nodiscard]] inline Value value_of(const std::optional<PictureQuality>& q) {

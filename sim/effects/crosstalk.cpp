@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "sim/effects/effect_list.hpp"
 #include "sim/effects/estimates.hpp"
 #include "sim/effects/frame_step.hpp"
+#include "sim/effects/levels_before.hpp"
 
 namespace compueye::sim {
 namespace {
@@ -37,10 +39,17 @@ class Step final : public FrameStep {
   std::vector<double> before_;
 };
 
+// With n <= 4 neighbours a level changes by (share / 4) n (mean of them - level): at most the share times the
+// difference to the neighbours. That is the preview's, as bright as light may get, and what each channel has for
+// itself: of variance v in every channel, v (1 + 1 / n) in a difference to the mean of n >= 2.
+double bound(const Circumstances& c) {
+  const LevelsBefore before = levels_before(effect::crosstalk, c);
+  const double difference = std::hypot(before.brighter * c.preview.neighbour_rms, std::sqrt(1.5) * before.uneven_lsb);
+  return margin * c.board.build.crosstalk * difference;
+}
+
 }  // namespace
 
-// With n <= 4 neighbours a level changes by (share / 4) n (mean of them - level): at most the share times the preview's
-// difference to the neighbours.
 const Effect effect::crosstalk{
     .name = "crosstalk",
     .group = EffectGroup::optics,
@@ -50,7 +59,7 @@ const Effect effect::crosstalk{
       const double share = c.board.build.crosstalk;
       return share > 0.0 ? "neighbours share " + figure(100.0 * share) + " % of a signal" : "";
     },
-    .bound = [](const Circumstances& c) { return margin * c.board.build.crosstalk * c.preview.neighbour_rms; },
+    .bound = bound,
     .cost = [](const Circumstances& c) { return step_cost(c, 6.0); },
     .apply =
         [](const Circumstances& c, Workings& w) {

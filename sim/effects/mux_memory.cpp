@@ -6,6 +6,7 @@
 #include "sim/effects/effect_list.hpp"
 #include "sim/effects/estimates.hpp"
 #include "sim/effects/frame_step.hpp"
+#include "sim/effects/levels_before.hpp"
 
 namespace compueye::sim {
 namespace {
@@ -24,11 +25,13 @@ double mean_square_step(const Circumstances& c) noexcept {
 
 // The voltage that the converter reads is v_i = y_i + m (v_(i-1) - y_i), so v - y = sum over k >= 1 of m^k times the
 // step between channels i - k + 1 and i - k: rms at most m / (1 - m) that of the steps. First channels of a converter
-// have nothing before them. Steps are of the scene and of the photons, whose noise differs from channel to channel.
+// have nothing before them. Steps are those of the scene, as bright as light may get, and of what each channel has for
+// itself (gains, photons, a hot channel): variances of two channels add up.
 double bound(const Circumstances& c) {
-  const double memory = c.board.detector.mux_memory(), electrons = c.board.detector.electrons_per_lsb;
-  const double shot_variance = electrons > 0.0 ? c.preview.mean / electrons : 0.0;
-  const double step = std::sqrt(mean_square_step(c) + 2.0 * shot_variance);
+  const double memory = c.board.detector.mux_memory();
+  const LevelsBefore before = levels_before(effect::mux_memory, c);
+  const double step =
+      std::sqrt(before.brighter * before.brighter * mean_square_step(c) + 2.0 * before.uneven_lsb * before.uneven_lsb);
   return margin * memory / (1.0 - memory) * step;
 }
 

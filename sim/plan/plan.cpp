@@ -4,14 +4,23 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/effects/effect_list.hpp"
+
 namespace compueye::sim {
 namespace {
 
-/// Rounding, and what photons and the converter add in every channel and frame.
-double noise_of(const Circumstances& c) noexcept {
-  constexpr double rounding_variance = 1.0 / 12.0;
-  const double read = c.board.sensor.read_noise_lsb, electrons = c.board.detector.electrons_per_lsb;
-  const double shot_variance = electrons > 0.0 ? std::max(c.preview.mean, 0.0) / electrons : 0.0;
+bool simulated(const Effect& effect, const Scene& scene) {
+  const auto forced = scene.effects.find(std::string(effect.name));
+  return forced == scene.effects.end() || forced->second != Forced::off;
+}
+
+/// Rounding, and what photons and the converter add in every channel and frame, as far as it is simulated: where there
+/// is no noise nothing hides behind it.
+double noise_of(const Circumstances& c, bool rounded) {
+  const double rounding_variance = rounded ? 1.0 / 12.0 : 0.0, electrons = c.board.detector.electrons_per_lsb;
+  const double read = simulated(effect::read_noise, c.scene) ? c.board.sensor.read_noise_lsb : 0.0;
+  const bool photons = electrons > 0.0 && simulated(effect::shot_noise, c.scene);
+  const double shot_variance = photons ? std::max(c.preview.mean, 0.0) / electrons : 0.0;
   return std::sqrt(rounding_variance + read * read + shot_variance);
 }
 
@@ -118,12 +127,13 @@ std::string provenance_of(const Plan& plan) {
   return text;
 }
 
-Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensitivity, PlanMode mode,
+Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensitivity, const Budget& budget,
                   std::span<const Effect* const> list) {
+  const PlanMode mode = budget.mode;
   Plan plan;
   plan.sensitivity = sensitivity;
   plan.signal_rms_lsb = circumstances.preview.rms;
-  plan.noise_lsb = noise_of(circumstances);
+  plan.noise_lsb = noise_of(circumstances, budget.rounded);
   const auto nmse_of = [&](double error_lsb, ErrorKind kind) {
     if (error_lsb == 0.0) return 0.0;
     // Without light there is no picture to spoil: errors are weighed as beside one LSB of signal.

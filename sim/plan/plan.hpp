@@ -8,6 +8,7 @@
 #include "hal/result.hpp"
 #include "sim/effects/effect.hpp"
 #include "sim/plan/sensitivity.hpp"
+#include "sim/render/render_watch.hpp"
 
 namespace compueye::sim {
 
@@ -36,10 +37,10 @@ struct PlannedEffect {
 struct Plan {
   std::vector<PlannedEffect> effects;  ///< all there are, in the order of light
   double signal_rms_lsb = 0.0;         ///< of the levels without noise, about
-  double noise_lsb = 0.0;              ///< read noise, shot noise and rounding: rms over the channels
-  double noise_nmse = 0.0;             ///< what that alone makes of the reconstruction
-  double left_out_nmse = 0.0;          ///< sum over what is left out, at most share_left_out times noise_nmse
-  double left_out_lsb = 0.0;           ///< rms of the sum of all left out, at most: sum of the bounds
+  double noise_lsb = 0.0;   ///< read noise, shot noise, rounding, as far as they are simulated: rms over the channels
+  double noise_nmse = 0.0;  ///< what that alone makes of the reconstruction
+  double left_out_nmse = 0.0;  ///< sum over what is left out, at most share_left_out times noise_nmse
+  double left_out_lsb = 0.0;   ///< rms of the sum of all left out, at most: sum of the bounds
   Sensitivity sensitivity;
 
   /// Of an effect of the list.
@@ -63,17 +64,25 @@ enum class PlanMode {
   nothing
 };
 
+/// What a plan may leave out. Only noise that is simulated hides anything: what a scene forces off does not.
+struct Budget {
+  PlanMode mode = PlanMode::automatic;
+  bool rounded = true;  ///< false: samples are taken as exact levels, and rounding hides nothing either
+};
+
 /// How a simulation comes to its plan.
 struct Planning {
-  PlanMode mode = PlanMode::automatic;
+  Budget budget = {};
   /// Measures how much a reconstruction of this scene bears, which may take seconds: asked only where an automatic plan
   /// depends on it. Empty: the figures of the paper's small eye serve.
   std::function<hal::Result<Sensitivity>(const Scene&)> measure = {};
+  /// Of the looks at the scene and of its first frame; as long as a simulation is created.
+  RenderWatch watch = {};
 };
 
 /// Leaves out the effects that save most time for their error, while what they add up to stays within the share; what
 /// the scene forces is as it says. `everything`: all there are, called for or not; `nothing`: none.
 [[nodiscard]] Plan plan_effects(const Circumstances& circumstances, const Sensitivity& sensitivity,
-                                PlanMode mode = PlanMode::automatic, std::span<const Effect* const> list = effects());
+                                const Budget& budget = {}, std::span<const Effect* const> list = effects());
 
 }  // namespace compueye::sim

@@ -60,7 +60,16 @@ struct Glance {
   double right_mm = 0.0, up_mm = 0.0;
 };
 
-hal::Result<Levels> levels_of(const EyeToSimulate& board, Scene scene, const Glance& glance) {
+/// How many looks there are to be, and who is told of them.
+struct Looking {
+  const EyeToSimulate& board;
+  const RenderWatch& watch;
+  double looks = 1.0;
+  double done = 0.0;
+};
+
+hal::Result<Levels> levels_of(Looking& looking, Scene scene, const Glance& glance) {
+  const EyeToSimulate& board = looking.board;
   for (Surface& surface : scene.surfaces) {
     surface.pose.centre_mm.x += glance.right_mm;
     surface.pose.centre_mm.y += glance.up_mm;
@@ -74,7 +83,13 @@ hal::Result<Levels> levels_of(const EyeToSimulate& board, Scene scene, const Gla
   settings.occlusion = glance.occlusion && may_hide(scene);
   Renderer renderer = TRY(Renderer::create(board.eye, board.object, OpticsAsBuilt::drawn(board.eye), settings, scene));
   Levels levels(static_cast<std::size_t>(board.eye.ommatidia()));
-  renderer.render(glance.t_s, levels);
+  const auto told = [&](double share) {
+    return looking.watch("looking at the scene", std::min((looking.done + share) / looking.looks, 1.0));
+  };
+  if (!renderer.render(glance.t_s, levels, looking.watch ? Renderer::Watch(told) : Renderer::Watch())) {
+    return hal::fail(hal::ErrorCode::interrupted, scene.name, "was not looked at to the end");
+  }
+  looking.done += 1.0;
   for (double& level : levels) level /= board.sensor.lsb();
   return levels;
 }
@@ -106,17 +121,21 @@ void add_neighbours(const hal::EyeGeometry& eye, Preview& preview) {
   preview.neighbour_rms = std::sqrt(squares / static_cast<double>(preview.levels.size()));
 }
 
+bool has_relief(const Scene& scene) {
+  return std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                     [](const Surface& surface) { return surface.shape == Shape::relief; });
+}
+
 /// By moving the scene to both sides. A relief takes longest and is as steep when it is pressed flat.
-hal::Result<void> add_slopes(const EyeToSimulate& board, const Scene& scene, double t_s, Preview& preview) {
-  const double step = look_mm(board) / 2.0;
-  const bool pressed = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
-                                   [](const Surface& surface) { return surface.shape == Shape::relief; });
+hal::Result<void> add_slopes(Looking& looking, const Scene& scene, double t_s, Preview& preview) {
+  const double step = look_mm(looking.board) / 2.0;
+  const bool pressed = has_relief(scene);
   Glance glance{.t_s = t_s, .depth = !pressed, .occlusion = !pressed};
-  const Levels middle = pressed ? TRY(levels_of(board, scene, glance)) : preview.levels;
+  const Levels middle = pressed ? TRY(levels_of(looking, scene, glance)) : preview.levels;
   const auto moved = [&](double right, double up) {
     glance.right_mm = right;
     glance.up_mm = up;
-    return levels_of(board, scene, glance);
+    return levels_of(looking, scene, glance);
   };
   for (const auto& [right, up] : {std::pair{step, 0.0}, {0.0, step}}) {
     const Levels after = TRY(moved(right, up)), before = TRY(moved(-right, -up));
@@ -144,6 +163,11 @@ bool lies_on_the_plane(const Surface& surface, const hal::ObjectPlane& object) {
   return surface.shape == Shape::plane && straight && surface.distance_mm.value_or(distance) == distance;
 }
 
+bool lies_flat(const Scene& scene, const hal::ObjectPlane& object) {
+  return std::all_of(scene.surfaces.begin(), scene.surfaces.end(),
+                     [&](const Surface& surface) { return lies_on_the_plane(surface, object); });
+}
+
 /// Times to look at: a still scene's beginning, else some of what is judged, none of them on its beat.
 std::vector<double> times_of(const Scene& scene) {
   if (scene.still()) return {0.0};
@@ -153,20 +177,18 @@ std::vector<double> times_of(const Scene& scene) {
 }
 
 /// Rms over the times of what each of depth, occlusion and motion changes.
-hal::Result<void> add_changes(const EyeToSimulate& board, const Scene& scene, const std::vector<double>& times,
+hal::Result<void> add_changes(Looking& looking, const Scene& scene, const std::vector<double>& times,
                               const std::vector<Levels>& looks, Preview& preview) {
-  const bool flat = std::all_of(scene.surfaces.begin(), scene.surfaces.end(),
-                                [&](const Surface& surface) { return lies_on_the_plane(surface, board.object); });
-  const bool alone = !may_hide(scene);
+  const bool flat = lies_flat(scene, looking.board.object), alone = !may_hide(scene);
   double of_depth = 0.0, of_occlusion = 0.0, of_motion = 0.0;
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto count = static_cast<double>(times.size());
     if (!flat) {
-      const Levels changed = TRY(levels_of(board, scene, {.t_s = times[k], .depth = false}));
+      const Levels changed = TRY(levels_of(looking, scene, {.t_s = times[k], .depth = false}));
       of_depth += std::pow(rms_between(looks[k], changed), 2) / count;
     }
     if (!alone) {
-      const Levels changed = TRY(levels_of(board, scene, {.t_s = times[k], .occlusion = false}));
+      const Levels changed = TRY(levels_of(looking, scene, {.t_s = times[k], .occlusion = false}));
       of_occlusion += std::pow(rms_between(looks[k], changed), 2) / count;
     }
     of_motion += std::pow(rms_between(looks[k], looks[0]), 2) / std::max(count - 1.0, 1.0);
@@ -177,13 +199,20 @@ hal::Result<void> add_changes(const EyeToSimulate& board, const Scene& scene, co
   return {};
 }
 
+/// At each time as it is, flat and without what hides, and from four sides, for a relief from the front as well.
+double looks_at(const Scene& scene, const hal::ObjectPlane& object, std::size_t times) {
+  const int each = 1 + (lies_flat(scene, object) ? 0 : 1) + (may_hide(scene) ? 1 : 0);
+  return static_cast<double>(times) * each + 4.0 + (has_relief(scene) ? 1.0 : 0.0);
+}
+
 }  // namespace
 
-hal::Result<Preview> preview_of(const EyeToSimulate& board, const Scene& scene) {
+hal::Result<Preview> preview_of(const EyeToSimulate& board, const Scene& scene, const RenderWatch& watch) {
   const Scene coarse = coarse_scene(board, scene);
   const std::vector<double> times = times_of(coarse);
   std::vector<Levels> looks;
-  for (const double t_s : times) looks.push_back(TRY(levels_of(board, coarse, {.t_s = t_s})));
+  Looking looking{board, watch, looks_at(coarse, board.object, times.size())};
+  for (const double t_s : times) looks.push_back(TRY(levels_of(looking, coarse, {.t_s = t_s})));
   const auto brightest =
       std::max_element(looks.begin(), looks.end(), [](const Levels& a, const Levels& b) { return rms(a) < rms(b); });
   Preview preview;
@@ -194,8 +223,8 @@ hal::Result<Preview> preview_of(const EyeToSimulate& board, const Scene& scene) 
   }
   preview.rms = rms(preview.levels);
   add_neighbours(board.eye, preview);
-  TRY(add_slopes(board, coarse, times[static_cast<std::size_t>(brightest - looks.begin())], preview));
-  TRY(add_changes(board, coarse, times, looks, preview));
+  TRY(add_slopes(looking, coarse, times[static_cast<std::size_t>(brightest - looks.begin())], preview));
+  TRY(add_changes(looking, coarse, times, looks, preview));
   return preview;
 }
 

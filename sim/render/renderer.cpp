@@ -19,6 +19,17 @@ using hal::ErrorCode;
 using hal::fail;
 using hal::Result;
 
+/// Of a rendering, told to whoever watches it.
+class Steps {
+ public:
+  Steps(const Renderer::Watch& watch, std::size_t all) : watch_(watch), all_(static_cast<double>(all)) {}
+  [[nodiscard]] bool next() { return !watch_ || watch_(std::min(done_++ / all_, 1.0)); }
+
+ private:
+  const Renderer::Watch& watch_;
+  double done_ = 0.0, all_;
+};
+
 /// One surface and what every ommatidium has of it.
 struct Rendered {
   const Surface* surface = nullptr;
@@ -110,6 +121,7 @@ struct Renderer::Parts {
   std::vector<std::size_t> casting;  ///< surfaces, as in shadows
   std::vector<Constraint> constraints;
   int rendered = 0;
+  bool given_up = false;  ///< at the last call: nothing is as it was left
 
   [[nodiscard]] PlacedSurface placed(const Surface& surface, double t_s) const {
     Surface flat;
@@ -158,8 +170,9 @@ struct Renderer::Parts {
     return {one.sums, one.heights ? &*one.heights : nullptr, one.place, one.heights && settings.occlusion};
   }
 
-  void see(Rendered& one) {
+  [[nodiscard]] bool see(Rendered& one, Steps& steps) {
     for (std::size_t m = 0; m < one.seen.size(); ++m) {
+      if (!steps.next()) return false;
       one.seen[m] = 0.0;
       if (!one.place.present) continue;
       const Gaze here = gaze(m);
@@ -167,6 +180,7 @@ struct Renderer::Parts {
         if (cone.weight != 0.0) one.seen[m] += cone.weight * light_seen(sight(one), here, cone, constraints);
       }
     }
+    return true;
   }
 
   /// Whether `front` stands, or stood, where an ommatidium looks.
@@ -207,15 +221,43 @@ struct Renderer::Parts {
     return sum;
   }
 
-  [[nodiscard]] bool hide(std::size_t behind) {
+  /// `any` becomes true where something had to be integrated.
+  [[nodiscard]] bool hide(std::size_t behind, Steps& steps, bool& any) {
     Rendered& one = surfaces[behind];
-    bool any = false;
     for (std::size_t m = 0; m < one.hidden.size(); ++m) {
       if (!outdated(behind, optics.ommatidia[m])) continue;
+      if (!steps.next()) return false;
       any = true;
       one.hidden[m] = one.place.present ? hidden(behind, m) : 0.0;
     }
-    return any;
+    return true;
+  }
+
+  /// Integrals of an ommatidium that are to come, at most.
+  [[nodiscard]] std::size_t steps_to_come() const {
+    std::size_t all = 0;
+    bool any = false;
+    for (const Rendered& one : surfaces) {
+      any = any || one.moved;
+      if (one.moved) all += one.seen.size();
+    }
+    return all + (any && settings.occlusion ? surfaces.size() * optics.ommatidia.size() : 0);
+  }
+
+  [[nodiscard]] bool render(std::span<double> signals, Steps& steps) {
+    rendered = 0;
+    for (Rendered& one : surfaces) {
+      if (one.moved && !see(one, steps)) return false;
+    }
+    std::fill(signals.begin(), signals.end(), 0.0);
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+      const Rendered& one = surfaces[s];
+      bool hiding = false;
+      if (settings.occlusion && !hide(s, steps, hiding)) return false;
+      if (one.moved || hiding) ++rendered;
+      for (std::size_t m = 0; m < signals.size(); ++m) signals[m] += one.seen[m] - one.hidden[m];
+    }
+    return true;
   }
 };
 
@@ -268,21 +310,13 @@ Result<Renderer> Renderer::create(const hal::EyeGeometry& eye, const hal::Object
   return Renderer(std::move(parts));
 }
 
-void Renderer::render(double t_s, std::span<double> signals) {
+bool Renderer::render(double t_s, std::span<double> signals, const Watch& watch) {
   Parts& parts = *parts_;
   parts.place(t_s);
-  parts.rendered = 0;
-  for (Rendered& one : parts.surfaces) {
-    one.moved = !one.place.stands_as(one.before);
-    if (one.moved) parts.see(one);
-  }
-  std::fill(signals.begin(), signals.end(), 0.0);
-  for (std::size_t s = 0; s < parts.surfaces.size(); ++s) {
-    Rendered& one = parts.surfaces[s];
-    const bool hiding = parts.settings.occlusion && parts.hide(s);
-    if (one.moved || hiding) ++parts.rendered;
-    for (std::size_t m = 0; m < signals.size(); ++m) signals[m] += one.seen[m] - one.hidden[m];
-  }
+  for (Rendered& one : parts.surfaces) one.moved = parts.given_up || !one.place.stands_as(one.before);
+  Steps steps(watch, parts.steps_to_come());
+  parts.given_up = !parts.render(signals, steps);
+  return !parts.given_up;
 }
 
 int Renderer::surfaces_rendered() const noexcept {

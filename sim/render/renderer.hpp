@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -35,9 +36,13 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
   ~Renderer();
 
+  /// Told the share of a rendering that is done, 0 .. 1, after every ommatidium; false: give up.
+  using Watch = std::function<bool(double share)>;
+
   /// The M noise-free signals at `t_s`. What did not move since the last call costs nothing; does not allocate after
-  /// the first call. A surface that has come into the eye is left out of the picture.
-  void render(double t_s, std::span<double> signals);
+  /// the first call. A surface that has come into the eye is left out of the picture. False: the watch gave up, the
+  /// signals are nobody's, and the next call renders everything.
+  bool render(double t_s, std::span<double> signals, const Watch& watch = {});
 
   /// Surfaces integrated by the last render() (0: everything was as before).
   [[nodiscard]] int surfaces_rendered() const noexcept;

@@ -63,9 +63,9 @@ struct Scene {
 [[nodiscard]] Scene lit(Scene scene);
 
 /// Errors: usage (no surface), mismatch (rows, columns and number of pixels disagree; bands of several sizes; times of
-/// a path that do not ascend; heights without a relief; a sphere that is none), out_of_range (empty, a size, distance
-/// or rate outside its range, a pixel that is negative, NaN or infinite, named by row and column). The place is the
-/// surface's name or the scene's.
+/// a path that do not ascend; a motion that begins after the scene's duration; mains without flicker; heights without a
+/// relief; a sphere that is none), out_of_range (empty, a size, distance or rate outside its range, a pixel that is
+/// negative, NaN or infinite, named by row and column). The place is the surface's name or the scene's.
 [[nodiscard]] hal::Result<void> validate(const Scene& scene);
 
 /// What moves stays before the lens tip and within farthest_mm, within seconds_to_judge(). Of a scene that validate()

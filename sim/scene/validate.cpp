@@ -122,6 +122,14 @@ Result<void> check_surface(const Surface& surface) {
   return check_motion(surface);
 }
 
+/// A scene that begins anew before a motion begins never moves.
+Result<void> check_begins(const Surface& surface, double duration_s) {
+  if (duration_s == 0.0 || surface.motion.start_s < duration_s) return {};
+  return fail(ErrorCode::mismatch, surface.name,
+              "start_s is " + std::to_string(surface.motion.start_s) + " s, which a scene of " +
+                  std::to_string(duration_s) + " s never comes to");
+}
+
 Result<void> check_light(const std::string& name, const Light& light) {
   const Check check{name};
   TRY(check.within("[light] level", light.level, 0.0, 1000.0));
@@ -130,6 +138,7 @@ Result<void> check_light(const std::string& name, const Light& light) {
   if (light.mains_hz != 0.0) TRY(check.within("[light] mains_hz", light.mains_hz, 40.0, 500.0));
   TRY(check.within("[light] flicker_depth", light.flicker_depth, 0.0, 1.0));
   TRY(check.needs(light.flicker_depth == 0.0 || light.mains_hz > 0.0, "[light] flicker_depth", "[light] mains_hz"));
+  TRY(check.needs(light.mains_hz == 0.0 || light.flicker_depth > 0.0, "[light] mains_hz", "[light] flicker_depth"));
   for (const double band : light.spectrum) TRY(check.within("[light] spectrum", band, 0.0, 1e6));
   if (std::any_of(light.spectrum.begin(), light.spectrum.end(), [](double band) { return band > 0.0; })) return {};
   return fail(ErrorCode::out_of_range, name, "[light] spectrum is 0 everywhere, expected one value above 0");
@@ -162,6 +171,7 @@ Result<void> validate(const Scene& scene) {
   }
   for (const Surface& surface : scene.surfaces) TRY(check_surface(surface));
   TRY(Check{scene.name}.within("duration_s", scene.duration_s, 0.0, longest_scene_s));
+  for (const Surface& surface : scene.surfaces) TRY(check_begins(surface, scene.duration_s));
   TRY(check_light(scene.name, scene.light));
   return check_display(scene.name, scene.display);
 }

@@ -32,7 +32,7 @@ Result<hal::Image> levels_of(sim::Simulation& simulation, std::uint64_t frame) {
 Result<sim::Simulation> simulated(const Board& board, sim::Scene scene, std::uint64_t seed) {
   auto settings = simulated_eye_settings(board, std::move(scene), seed);
   return sim::Simulation::create(settings.board, std::move(settings.scenes.front()), seed,
-                                 {.mode = sim::PlanMode::everything});
+                                 {.budget = {sim::PlanMode::everything}});
 }
 
 /// Both panels of an effect: the samples without it, brightest white, and what it adds to them.

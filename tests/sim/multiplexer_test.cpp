@@ -43,7 +43,7 @@ TEST_CASE("channels see a moving picture at the time at which their converter re
   for (const MuxOrder order : {MuxOrder::neighbours, MuxOrder::interleaved}) {
     CAPTURE((order == MuxOrder::interleaved));
     const sim::EyeToSimulate board = board_of(rig, order);
-    auto simulation = sim::Simulation::create(board, scene, 1, {.mode = sim::PlanMode::nothing});
+    auto simulation = sim::Simulation::create(board, scene, 1, {.budget = {sim::PlanMode::nothing}});
     REQUIRE(simulation.has_value());
     const double middle_s = 3.0 * board.period_s() + board.integration_s() / 2.0;
     const std::vector<double> first = test::rendered(rig, scene, middle_s);

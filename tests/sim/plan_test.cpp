@@ -27,7 +27,7 @@ struct PlanBench {
     preview.mean = preview.rms = preview.largest = 100.0;
   }
   [[nodiscard]] Plan plan(std::span<const Effect* const> list, PlanMode mode = PlanMode::automatic) const {
-    return plan_effects({board, scene, preview}, sensitivity, mode, list);
+    return plan_effects({board, scene, preview}, sensitivity, {mode}, list);
   }
 };
 
@@ -138,6 +138,27 @@ TEST_CASE("photons are noise, too: in bright light more may be left out") {
   const Plan plan = bench.plan(list);
   CHECK(plan.noise_lsb == doctest::Approx(std::sqrt(1.0 + 1.0 / 12.0 + 100.0)));
   CHECK(decision_of(plan, "large") == Decision::left_out);
+}
+
+TEST_CASE("noise that is not simulated hides nothing") {
+  PlanBench bench;
+  bench.board.detector.electrons_per_lsb = 1.0;
+  const std::array list{&small, &large};
+  const auto noise_of = [&](const Budget& budget) {
+    return plan_effects({bench.board, bench.scene, bench.preview}, bench.sensitivity, budget, list);
+  };
+  CHECK(noise_of({}).noise_lsb == doctest::Approx(std::sqrt(101.0 + 1.0 / 12.0)));
+  CHECK(noise_of({.rounded = false}).noise_lsb == doctest::Approx(std::sqrt(101.0)));
+  bench.scene.effects = {{"shot_noise", Forced::off}};
+  CHECK(noise_of({}).noise_lsb == doctest::Approx(std::sqrt(1.0 + 1.0 / 12.0)));
+  bench.scene.effects = {{"shot_noise", Forced::on}, {"read_noise", Forced::off}};
+  CHECK(noise_of({}).noise_lsb == doctest::Approx(std::sqrt(100.0 + 1.0 / 12.0)));
+  bench.scene.effects = {{"shot_noise", Forced::off}, {"read_noise", Forced::off}};
+  CHECK(noise_of({}).noise_lsb == doctest::Approx(std::sqrt(1.0 / 12.0)));
+  CHECK(decision_of(noise_of({}), "small") == Decision::on);
+  const Plan exact = noise_of({.rounded = false});
+  CHECK(exact.noise_lsb == 0.0);
+  CHECK(exact.leaves_nothing_out());
 }
 
 TEST_CASE("without light a plan has finite figures") {

@@ -142,6 +142,37 @@ TEST_CASE("what did not move costs nothing, and what moved in front is taken off
   CHECK(largest_difference(signals, rendered(rig, scene)) < 2.0 * rig.settings.tolerance);
 }
 
+TEST_CASE("a rendering that is given up is done anew, from any place") {
+  RenderRig rig = wide_eye();
+  rig.settings.motion = rig.settings.occlusion = true;
+  Scene scene = scene_on(rig.object, "line art", picture_of("line-art", rig.object));
+  scene.surfaces.push_back(scene.surfaces[0]);
+  scene.surfaces.back().width_mm = scene.surfaces.back().height_mm = 4.0;
+  scene.surfaces.back().distance_mm = 8.0;
+  scene.surfaces.back().motion.velocity_mm_per_s = {1.0, 0.0, 0.0};
+  auto renderer = Renderer::create(rig.eye, rig.object, OpticsAsBuilt::drawn(rig.eye), rig.settings, scene);
+  REQUIRE(renderer.has_value());
+  std::vector<double> signals(400), expected(400);
+  int told = 0;
+  double last = -1.0;
+  CHECK(renderer->render(0.3, expected, [&](double share) {
+    CHECK(share > last);
+    CHECK(share <= 1.0);
+    last = share;
+    ++told;
+    return true;
+  }));
+  CHECK(last > 0.3);
+  REQUIRE(told > 800);
+  for (const int given_up_at : {1, 250, 400, 410}) {
+    int left = given_up_at;
+    REQUIRE(renderer->render(0.6, signals));
+    REQUIRE_FALSE(renderer->render(0.3, signals, [&](double) { return --left > 0; }));
+    CHECK(renderer->render(0.3, signals));
+    CHECK(signals == expected);
+  }
+}
+
 TEST_CASE("frames after the first do not allocate, and renderers in threads do not disturb each other") {
   RenderRig rig = wide_eye();
   rig.settings.motion = rig.settings.occlusion = true;

@@ -149,7 +149,8 @@ Result<void> BoardRun::make_eye() {
   const std::int64_t begin_ns = session_.clock().now_ns();
   const recon::Progress progress = session_.progress();
   progress(options_.replays() ? "recording" : board_.source.simulated() ? "simulated eye" : "eye", 0.0, 0.0);
-  source_ = TRY(RunSource::make(options_, board_, scene_, frames(), session_.clock(), progress));
+  source_ = TRY(RunSource::make(options_, board_, scene_, frames(), session_.clock(), progress,
+                                [&stop = session_.stop_requested()] { return !stop.load(std::memory_order_relaxed); }));
   report_.source = source_->name();
   if (!source_->mismatch().empty()) choice_notes_.push_back(source_->mismatch());
   TRY(choose_eye(progress));
@@ -326,16 +327,21 @@ Result<void> BoardRun::run_with(FrameSolver& solver, const RunSinks& sinks, Fram
 }
 
 Result<void> BoardRun::measure_quality() {
-  const auto quality = [&](std::span<const float> pixels, std::uint64_t frame) -> Result<PictureQuality> {
+  const auto quality = [&](std::span<const float> pixels, std::uint64_t frame) -> Result<QualityIfLit> {
     if (!scene_.still()) truth_ = TRY(truth_of_frame(board_, scene_, frame));
-    return quality_of(recon::PictureView(pixels, truth_.rows, truth_.cols), truth_);
+    return quality_if_lit(recon::PictureView(pixels, truth_.rows, truth_.cols), truth_);
   };
   std::vector<PictureQuality> pictures;
   for (std::size_t i = 0; i < keeper_->kept(); ++i) {
-    pictures.push_back(TRY(quality(keeper_->picture(i), keeper_->frame(i))));
+    const auto one = TRY(quality(keeper_->picture(i), keeper_->frame(i)));
+    if (one) pictures.push_back(*one);
   }
-  report_.quality = summarise(pictures).mean;
-  report_.measured = keeper_->kept();
+  if (!pictures.empty()) report_.quality = summarise(pictures).mean;
+  report_.measured = pictures.size();
+  if (const std::size_t black = keeper_->kept() - pictures.size(); black > 0) {
+    note(fmt::format("the scene was black in {} of {} pictures, which NMSE, PSNR and SSIM leave out", black,
+                     keeper_->kept()));
+  }
   report_.last_quality = TRY(quality(keeper_->last(), keeper_->last_frame()));
   return {};
 }
@@ -347,7 +353,7 @@ Result<void> BoardRun::compare() {
     note("the conventional eye is left out: " + conventional.error().text());
   } else {
     conventional_ = std::move(*conventional);
-    report_.conventional = TRY(quality_of(conventional_, truth_));
+    report_.conventional = TRY(quality_if_lit(conventional_, truth_));
   }
   TRY(measure_quality());
   return write_sheet();

@@ -88,7 +88,8 @@ Result<std::unique_ptr<recording::RecordingSource>> with_recorder(const Recordin
 }
 
 Result<RunSource> RunSource::make(const RunOptions& options, const Board& board, const sim::Scene& scene,
-                                  std::uint64_t frames, hal::Clock& clock, const recon::Progress& progress) {
+                                  std::uint64_t frames, hal::Clock& clock, const recon::Progress& progress,
+                                  std::function<bool()> go_on) {
   RunSource made;
   if (options.replays()) {
     auto replay = TRY(recording::ReplaySource::open(options.replay, options.pace(), clock));
@@ -98,7 +99,7 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
     made.eye_.source = std::move(replay);
     return made;
   }
-  EyeWanted wanted{scene, options.seed, options.lossless, std::nullopt, progress};
+  EyeWanted wanted{scene, options.seed, options.lossless, std::nullopt, progress, std::move(go_on)};
   // Without a limit the frames read ahead of the last one would be made only to be thrown away.
   if (options.lossless && frames > 0 && !options.check_every_s) wanted.frame_limit = frames;
   if (options.check_every_s && board.source.simulated()) {

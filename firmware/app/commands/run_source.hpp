@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,7 +50,7 @@ class RunSource {
   /// ReplaySource::open(); mismatch (a recording of another number of channels or depth than the board's).
   [[nodiscard]] static hal::Result<RunSource> make(const RunOptions& options, const Board& board,
                                                    const sim::Scene& scene, std::uint64_t frames, hal::Clock& clock,
-                                                   const recon::Progress& progress);
+                                                   const recon::Progress& progress, std::function<bool()> go_on);
   /// Frames of checks are taken out of what is run and recorded. Before a recording is begun.
   void add_checks(CheckSettings settings, hal::Clock& clock);
 

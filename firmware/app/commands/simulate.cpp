@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -55,13 +54,9 @@ Result<void> check(const SimulateRequest& o) {
               "is missing: name the .npy file for the samples, for example --out y.npy");
 }
 
-/// A black picture's NMSE is 1: a larger bound says nothing about a reconstruction.
-std::optional<double> telling(double nmse) {
-  return nmse <= 1.0 ? std::optional(nmse) : std::nullopt;
-}
-
+/// A black picture's NMSE is 1: how much larger a bound is says nothing about a reconstruction.
 std::string nmse_text(double nmse) {
-  return telling(nmse) ? significant(nmse, 2) : "> 1";
+  return nmse < 1.0 ? significant(nmse, 2) : "1 or more";
 }
 
 /// Which effects are simulated and why: for programs, and as a table.
@@ -97,7 +92,7 @@ Explanation::Explanation(const sim::Plan& plan, double frames) : frames_(frames)
                            {"decision", std::string(name(e.decision))},
                            {"called_for_by", e.called_for_by},
                            {"bound_lsb", e.bound_lsb},
-                           {"nmse", telling(e.nmse)},
+                           {"nmse", e.nmse},
                            {"time_share", share}});
     table.add({std::string(e.effect->name), called ? e.called_for_by : "-", called ? significant(e.bound_lsb, 2) : "",
                called ? nmse_text(e.nmse) : "", std::string(name(e.decision)),
@@ -108,8 +103,9 @@ Explanation::Explanation(const sim::Plan& plan, double frames) : frames_(frames)
 /// What the plan adds up to, in a sentence.
 std::string sum_of(const sim::Plan& plan) {
   const std::string measured = plan.sensitivity.measured ? "measured for this eye" : "of the paper's small eye";
+  if (plan.noise_lsb == 0.0) return "There is no noise, which is all that anything could hide behind.\n";
   return fmt::format(
-      "Noise is {} LSB of {} and makes an NMSE of about {} (sensitivity {}); what is left out adds at "
+      "Noise is {} LSB of {} and makes an NMSE of {} by estimate (sensitivity {}); what is left out adds at "
       "most {}.\n",
       significant(plan.noise_lsb, 2), significant(plan.signal_rms_lsb, 3), nmse_text(plan.noise_nmse), measured,
       nmse_text(plan.left_out_nmse));
@@ -136,25 +132,37 @@ void append(const hal::SampleBlock& block, const Board& board, bool codes, Sampl
 
 using Eye = std::unique_ptr<sim::SimulatedEye>;
 
-Result<Eye> eye_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o, Session& session,
-                   hal::Clock& clock) {
+/// Every frame's rendering is told as part of all of them; `frame` is the one that is made.
+sim::RenderWatch watch_of(const SimulateRequest& o, const std::int64_t& frame, Session& session) {
+  return [&frame, frames = o.frames, progress = session.progress()](std::string_view, double share) {
+    return progress("samples", static_cast<double>(frame) + share, static_cast<double>(frames));
+  };
+}
+
+Result<Eye> eye_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o, sim::RenderWatch watch,
+                   Session& session, hal::Clock& clock) {
   sim::Scene seen = scene;
   for (const sim::Effect* effect : sim::effects()) {
     if (o.noise_free && effect->noise) seen.effects[std::string(effect->name)] = sim::Forced::off;
   }
-  auto eye = planned_eye(board, simulated_eye_settings(board, std::move(seen), o.seed), clock, session.progress());
+  sim::SimulatedEyeSettings settings = simulated_eye_settings(board, std::move(seen), o.seed);
+  settings.planning.budget.rounded = o.codes || !o.noise_free;
+  settings.watch = std::move(watch);
+  auto eye = planned_eye(board, std::move(settings), clock, session.progress());
   session.end_progress();
   return eye;
 }
 
-Result<Samples> take(const Board& board, sim::SimulatedEye& eye, const SimulateRequest& o, const Session& session) {
+Result<Samples> take(const Board& board, sim::SimulatedEye& eye, const SimulateRequest& o, std::int64_t& f,
+                     Session& session) {
   TRY(eye.start());
   const double lsb = board.sensor.lsb(), dark = board.sensor.dark_level_lsb;
   Samples samples;
-  for (std::int64_t f = 0; f < o.frames; ++f) {
-    TRY(session.check_stop());
+  for (f = 0; f < o.frames; ++f) {
     const std::size_t begin = samples.values.size();
-    append(TRY(eye.read(0)), board, o.codes, samples);
+    const auto block = eye.read(0);
+    TRY(session.check_stop());
+    append(TRY(block), board, o.codes, samples);
     if (!o.noise_free || o.codes) continue;
     const std::span<const double> levels = eye.levels_lsb(static_cast<std::uint64_t>(f));
     for (std::size_t c = 0; c < levels.size(); ++c) {
@@ -162,6 +170,7 @@ Result<Samples> take(const Board& board, sim::SimulatedEye& eye, const SimulateR
       if (!std::isnan(value)) value = static_cast<float>((levels[c] - dark) * lsb);
     }
   }
+  session.end_progress();
   return samples;
 }
 
@@ -221,9 +230,9 @@ Figures report_of(const Board& board, const sim::Scene& scene, const sim::Plan& 
             {"saturated_frames", samples.saturated_frames},
             {"effects", effects.list},
             {"noise_lsb", plan.noise_lsb},
-            {"noise_nmse", telling(plan.noise_nmse)},
+            {"noise_nmse", plan.noise_nmse},
             {"left_out_lsb", plan.left_out_lsb},
-            {"left_out_nmse", telling(plan.left_out_nmse)},
+            {"left_out_nmse", plan.left_out_nmse},
             {"sensitivity_measured", plan.sensitivity.measured},
             {"samples_file", o.out},
             {"truth_file", o.truth}};
@@ -232,8 +241,8 @@ Figures report_of(const Board& board, const sim::Scene& scene, const sim::Plan& 
     f.tell("{samples_file}: {frames:# frame} of {channels} samples of {board} in front of {scene}\n");
   }
   return f.tell(
-      "[{saturated_frames} frames have saturated channels\n]"
-      "[{dead_channels} dead channels are NaN; --weights writes the weights that leave them out\n]");
+      "[saturated channels in {saturated_frames:# frame}\n]"
+      "[{dead_channels:# dead channel} of NaN; --weights writes the weights that leave out what is dead\n]");
 }
 
 /// Writes the samples of a board's simulated eye: float32, (M,) for one frame and (frames, M) for more, by ommatidium,
@@ -246,8 +255,9 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
   for (const std::string& file : {request.out, request.truth, request.weights, request.png, request.gallery})
     TRY(try_output(file));
   hal::VirtualClock clock;
-  const Eye eye = TRY(eye_of(board, scene, request, session, clock));
-  const Samples samples = TRY(take(board, *eye, request, session));
+  std::int64_t frame = 0;
+  const Eye eye = TRY(eye_of(board, scene, request, watch_of(request, frame, session), session, clock));
+  const Samples samples = TRY(take(board, *eye, request, frame, session));
   if (!request.gallery.empty()) {
     const GalleryRequest wanted{request.gallery, static_cast<std::uint64_t>(request.frames) - 1, request.seed};
     TRY(write_effect_gallery(board, scene, wanted, session.progress()));

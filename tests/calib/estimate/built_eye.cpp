@@ -151,7 +151,7 @@ hal::Result<PixelResponses> pixel_responses(const sim::EyeToSimulate& board) {
     hal::Image picture(board.object.rows, board.object.cols);
     picture.pixels[n] = 1.0F;
     sim::Scene scene = sim::scene_on(board.object, "pixel", std::move(picture));
-    auto eye = TRY(sim::Simulation::create(exact, std::move(scene), 1, {.mode = sim::PlanMode::everything}));
+    auto eye = TRY(sim::Simulation::create(exact, std::move(scene), 1, {.budget = {sim::PlanMode::everything}}));
     const auto light = eye.noise_free(0);
     for (std::size_t m = 0; m < light.size(); ++m) all.light[m * pixels + n] = light[m];
     const auto levels = eye.levels_lsb(0);

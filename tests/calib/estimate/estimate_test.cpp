@@ -111,7 +111,7 @@ TEST_CASE("calib: rows found pixel by pixel are those of the simulated eye") {
     hal::Image picture(16, 16);
     std::copy_n(patterns.begin() + static_cast<std::ptrdiff_t>(p * 256), 256, picture.pixels.begin());
     auto direct = sim::Simulation::create(exact, sim::scene_on(board().object, "blobs", picture), 1,
-                                          {.mode = sim::PlanMode::everything});
+                                          {.budget = {sim::PlanMode::everything}});
     REQUIRE(direct.has_value());
     const auto levels = direct->levels_lsb(0);
     for (std::size_t m = 0; m < levels.size(); ++m) {

@@ -63,7 +63,7 @@ hal::Result<double> median_nmse(const recon::Response& unweighted, const std::ve
   sim::EyeToSimulate even = board;
   even.build.offset_spread_lsb = 0.0;  // dark levels are known
   auto detector = TRY(sim::Simulation::create(even, sim::scene_on(board.object, "black", hal::Image(1, 1, 0.5F)), 11,
-                                              {.mode = sim::PlanMode::everything}));
+                                              {.budget = {sim::PlanMode::everything}}));
   std::vector<double> light(static_cast<std::size_t>(board.eye.ommatidia())), all;
   std::vector<std::int32_t> codes(light.size());
   std::vector<float> y(light.size());

@@ -91,7 +91,7 @@ hal::Result<Session> simulated_session(sim::EyeToSimulate board, const PixelResp
                                        const SessionSettings& settings) {
   if (settings.shot) board.detector.electrons_per_lsb = electrons_at_full_scale / std::exp2(board.sensor.bits);
   auto detector = TRY(sim::Simulation::create(board, sim::scene_on(board.object, "black", hal::Image(1, 1, 0.5F)),
-                                              settings.seed, {.mode = sim::PlanMode::everything}));
+                                              settings.seed, {.budget = {sim::PlanMode::everything}}));
   const auto pixels = static_cast<std::size_t>(eye.pixels);
   const std::size_t count = patterns.size() / pixels;
   Player player(board, eye, settings, detector, count + count / 16 + 4);
