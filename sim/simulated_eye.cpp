@@ -52,8 +52,6 @@ Result<std::unique_ptr<SimulatedEye>> SimulatedEye::create(SimulatedEyeSettings 
   }
   settings.planning.measure = nullptr;  // these may look at what its caller owns
   settings.planning.watch = nullptr;
-  for (Simulation& simulation : simulations) simulation.watch(settings.watch);
-  if (display) display->watch(settings.watch);
   std::sort(settings.faults.lost_frames.begin(), settings.faults.lost_frames.end());
   return std::unique_ptr<SimulatedEye>(
       new SimulatedEye(std::move(settings), std::move(simulations), std::move(display), clock));
@@ -79,6 +77,11 @@ SimulatedEye::SimulatedEye(SimulatedEyeSettings settings, std::vector<Simulation
   for (const Simulation& simulation : simulations_) description_.provenance += provenance_of(simulation.plan());
   codes_.resize(m);
   valid_.resize(m);
+}
+
+void SimulatedEye::watch(const RenderWatch& watch) {
+  for (Simulation& simulation : simulations_) simulation.watch(watch);
+  if (display_) display_->watch(watch);
 }
 
 void SimulatedEye::Change::light_at(std::int64_t t_ns, std::span<double> light) const noexcept {

@@ -29,7 +29,6 @@ struct SimulatedEyeSettings {
   std::string serial = "sim-0";              ///< names the device and the place of its errors
   std::optional<std::uint64_t> frame_limit;  ///< frames the device makes after a start(), then end_of_stream
   DeviceFaults faults;
-  RenderWatch watch = {};  ///< of the frames after the first, for as long as there is the eye
 };
 
 /// A compound eye without hardware, behind the interface of the real ones.
@@ -38,8 +37,6 @@ struct SimulatedEyeSettings {
 /// t0 + f/rate to t0 + (f+1)/rate; SampleBlock::t_ns is the beginning and the frame can be read from the end on. A full
 /// FIFO loses its oldest frame: the reader sees the frame number jump, the overrun flag and a device_overrun count.
 /// Unpaced, a frame is exposed at the moment of the read and none is lost; t_ns then still grows by at least 1 ns.
-///
-/// A read whose rendering the watch gives up is timed out, and the next one finds the same frame.
 ///
 /// Samples depend on settings and frame number only: not on pacing, on when they are read or on what was lost before.
 /// account().produced counts the frames whose fate is settled; those still in the FIFO are settled by the next read()
@@ -50,6 +47,10 @@ class SimulatedEye final : public hal::SampleSource {
   /// Simulation::create(); usage (no scene), out_of_range.
   [[nodiscard]] static hal::Result<std::unique_ptr<SimulatedEye>> create(SimulatedEyeSettings settings,
                                                                          hal::Clock& clock);
+
+  /// Told of the renderings of frames from now on. A read whose rendering it gives up is timed out, and the next one
+  /// finds the same frame.
+  void watch(const RenderWatch& watch);
 
   /// From the exposures on that begin now, the display's first surface shows `picture` (no pixels: no light at all),
   /// and goes there from what was seen with a time constant of `response_s`. Where the settings have no display the

@@ -46,7 +46,8 @@ Result<sim::Sensitivity> sensitivity_to(const Board& drawn, const sim::Scene& sc
   const Board board = judged(drawn);
   const LivingResponse living = TRY(living_response(board, progress));
   recon::Objective objective = board.objective;
-  objective.lambda = board.lambda.value_or(0.0);  // else by rule, from what is in the key
+  constexpr double by_rule = -1.0;  // which follows from what is in the key; 0 may be somebody's choice
+  objective.lambda = board.lambda.value_or(by_rule);
   const SensitivityKey key =
       sensitivity_key(living.response.content_hash(), truth, objective, board.plan, board.noise_sigma());
   if (const auto kept = load_sensitivity(board.cache(), key)) return handed_over(*kept);

@@ -33,7 +33,6 @@ hal::Result<BoardEye> simulated(const Board& board, EyeWanted wanted, hal::Clock
   if (!wanted.lossless) settings.frame_rate_hz = board.source.frame_rate_hz;
   settings.frame_limit = wanted.frame_limit;
   settings.display = std::move(wanted.display);
-  if (wanted.go_on) settings.watch = [go_on = std::move(wanted.go_on)](std::string_view, double) { return go_on(); };
   auto eye = TRY(planned_eye(board, std::move(settings), clock, wanted.progress));
   sim::SimulatedEye* const at = eye.get();
   return BoardEye{std::move(eye), at, nullptr};

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,7 +30,6 @@ struct EyeWanted {
   bool lossless = false;   ///< a simulated eye waits for its reader instead of keeping the board's rate
   std::optional<std::uint64_t> frame_limit;  ///< frames that a simulated eye makes at most
   recon::Progress progress = {};             ///< of what a simulated eye's plan and first frame may take
-  std::function<bool()> go_on = {};          ///< asked while later frames are rendered; false: that frame is given up
   std::optional<sim::Scene> display = {};    ///< that a simulated eye's scene can be covered with
 };
 

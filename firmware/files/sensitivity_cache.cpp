@@ -1,7 +1,6 @@
 #include "firmware/files/sensitivity_cache.hpp"
 
 #include <array>
-#include <bit>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>

@@ -84,7 +84,7 @@ hal::Result<Levels> levels_of(Looking& looking, Scene scene, const Glance& glanc
   Renderer renderer = TRY(Renderer::create(board.eye, board.object, OpticsAsBuilt::drawn(board.eye), settings, scene));
   Levels levels(static_cast<std::size_t>(board.eye.ommatidia()));
   const auto told = [&](double share) {
-    return looking.watch("looking at the scene", std::min((looking.done + share) / looking.looks, 1.0));
+    return looking.watch("looking at the scene", (looking.done + share) / looking.looks);
   };
   if (!renderer.render(glance.t_s, levels, looking.watch ? Renderer::Watch(told) : Renderer::Watch())) {
     return hal::fail(hal::ErrorCode::interrupted, scene.name, "was not looked at to the end");

@@ -5,7 +5,8 @@
 
 namespace compueye::sim {
 
-/// Told what is rendered and the share of it that is done, 0 .. 1, some ten thousand times a second; false: give up.
+/// Told what is rendered and the share of it that is done, 0 .. 1, before every ommatidium of every surface; false:
+/// give up.
 using RenderWatch = std::function<bool(std::string_view what, double share)>;
 
 }  // namespace compueye::sim

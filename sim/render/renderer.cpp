@@ -23,7 +23,7 @@ using hal::Result;
 class Steps {
  public:
   Steps(const Renderer::Watch& watch, std::size_t all) : watch_(watch), all_(static_cast<double>(all)) {}
-  [[nodiscard]] bool next() { return !watch_ || watch_(std::min(done_++ / all_, 1.0)); }
+  [[nodiscard]] bool next() { return !watch_ || watch_(done_++ / all_); }
 
  private:
   const Renderer::Watch& watch_;

@@ -36,7 +36,7 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
   ~Renderer();
 
-  /// Told the share of a rendering that is done, 0 .. 1, after every ommatidium; false: give up.
+  /// Told the share of a rendering that is done, 0 .. 1, before every ommatidium of every surface; false: give up.
   using Watch = std::function<bool(double share)>;
 
   /// The M noise-free signals at `t_s`. What did not move since the last call costs nothing; does not allocate after

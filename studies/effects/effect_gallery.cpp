@@ -29,10 +29,13 @@ Result<hal::Image> levels_of(sim::Simulation& simulation, std::uint64_t frame) {
   return image;
 }
 
-Result<sim::Simulation> simulated(const Board& board, sim::Scene scene, std::uint64_t seed) {
+Result<sim::Simulation> simulated(const Board& board, sim::Scene scene, std::uint64_t seed,
+                                  const sim::RenderWatch& watch) {
   auto settings = simulated_eye_settings(board, std::move(scene), seed);
-  return sim::Simulation::create(settings.board, std::move(settings.scenes.front()), seed,
-                                 {.budget = {sim::PlanMode::everything}});
+  auto simulation = TRY(sim::Simulation::create(settings.board, std::move(settings.scenes.front()), seed,
+                                                {.budget = {sim::PlanMode::everything}, .watch = watch}));
+  simulation.watch(watch);
+  return simulation;
 }
 
 /// Both panels of an effect: the samples without it, brightest white, and what it adds to them.
@@ -59,18 +62,23 @@ Result<std::vector<Panel>> row_of(const sim::PlannedEffect& effect, const hal::I
 
 Result<void> write_effect_gallery(const Board& board, const sim::Scene& scene, const GalleryRequest& request,
                                   const recon::Progress& progress) {
-  sim::Simulation whole = TRY(simulated(board, scene, request.seed));
+  double done = 0.0;
+  const auto told = [&](std::string_view, double share) {
+    return !progress || progress("effects", done + share, static_cast<double>(sim::effects().size()));
+  };
+  sim::Simulation whole = TRY(simulated(board, scene, request.seed, told));
   const hal::Image with = TRY(levels_of(whole, request.frame));
   std::vector<Panel> panels;
   const auto& effects = whole.plan().effects;
   for (std::size_t k = 0; k < effects.size(); ++k) {
     if (effects[k].called_for_by.empty() || !effects[k].on()) continue;
-    if (progress && !progress("effects", static_cast<double>(k), static_cast<double>(effects.size()))) {
+    done = static_cast<double>(k);
+    if (!told("", 0.0)) {
       return hal::fail(hal::ErrorCode::interrupted, request.png, "was stopped before it was written");
     }
     sim::Scene left_out = scene;
     left_out.effects[std::string(effects[k].effect->name)] = sim::Forced::off;
-    sim::Simulation rest = TRY(simulated(board, std::move(left_out), request.seed));
+    sim::Simulation rest = TRY(simulated(board, std::move(left_out), request.seed, told));
     for (Panel& panel : TRY(row_of(effects[k], with, TRY(levels_of(rest, request.frame))))) {
       panels.push_back(std::move(panel));
     }

@@ -45,6 +45,46 @@ TEST_CASE("the multiplexer keeps a share of the channel before, along a converte
   CHECK(rig.bound("mux_memory") <= 10.0 * truth);
 }
 
+TEST_CASE("the bound of the multiplexer's memory knows of hot channels, gains, photons and light that flickers") {
+  EffectRig rig;
+  rig.board.detector.mux_channels = 8;
+  rig.board.detector.mux_slot_us = 3.0;
+  rig.board.detector.mux_time_constant_us = 3.0 / std::log(10.0);
+  CHECK(rig.bound("mux_memory") == 0.0);  // as bright for all
+  const auto check_with = [&](const std::vector<std::string_view>& before, int frames = 1) {
+    std::vector<std::string_view> all = before;
+    all.emplace_back("mux_memory");
+    const auto with = rig.play(all, frames), without = rig.play(before, frames);
+    double squares = 0.0;
+    for (std::size_t f = 0; f < with.size(); ++f) {
+      for (std::size_t m = 0; m < 64; ++m) squares += std::pow(with[f][m] - without[f][m], 2);
+    }
+    const double truth = std::sqrt(squares / 64.0 / frames);
+    CAPTURE(before.front());
+    CHECK(truth > 0.5);
+    CHECK(rig.bound("mux_memory") >= truth);
+    CHECK(rig.bound("mux_memory") <= 10.0 * truth);
+    return truth;
+  };
+  rig.board.detector.hot = {20};
+  rig.board.detector.hot_lsb = 4000.0;
+  CHECK(check_with({"defects"}) > 50.0);
+  rig.board.detector.hot.clear();
+  rig.board.build.gain_spread = 0.05;
+  check_with({"gain_spread"});
+  rig.board.build.gain_spread = 0.0;
+  rig.board.detector.electrons_per_lsb = 1.0;
+  check_with({"shot_noise"}, 20);
+  rig.board.detector.electrons_per_lsb = 0.0;
+  std::vector<double> steps(64, 0.0);
+  for (std::size_t m = 0; m < 64; m += 2) steps[m] = 1000.0;
+  rig.look_at(steps);
+  rig.board.detector.integration_ms = 1.0;
+  rig.scene.light.mains_hz = 50.0;
+  rig.scene.light.flicker_depth = 0.9;
+  check_with({"mains_flicker"}, 7);
+}
+
 TEST_CASE("interleaved channels keep a share of the one that their converter read before, not of their neighbour") {
   EffectRig rig(1, 8, 0.0);
   rig.board.detector.mux_channels = 4;

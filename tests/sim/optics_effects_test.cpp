@@ -213,3 +213,28 @@ TEST_CASE("crosstalk gives a quarter of its share to each neighbour and keeps th
   CHECK(seen.bound("crosstalk") >= truth);
   CHECK(seen.bound("crosstalk") <= 3.0 * truth);
 }
+
+TEST_CASE("the bound of crosstalk knows of light that flickers and of channels that differ") {
+  EffectRig rig;
+  rig.board.build.crosstalk = 0.02;
+  rig.board.detector.integration_ms = 1.0;
+  test::look_at(rig, test::tried_pictures(rig.board.object)[0]);
+  const double still = rig.bound("crosstalk");
+  rig.scene.light.mains_hz = 50.0;
+  rig.scene.light.flicker_depth = 0.5;
+  CHECK(rig.bound("crosstalk") > (1.0 + 0.5 * 0.9) * still);  // what is left after 1 ms
+  rig.scene.light = {};
+  CHECK(rig.bound("crosstalk") == still);
+  // Half of the ommatidia lose 40 % before a scene that is as bright for all of them.
+  EffectRig even;
+  even.board.build.crosstalk = 0.02;
+  even.preview.neighbour_rms = 0.0;
+  CHECK(even.bound("crosstalk") == 0.0);
+  even.board.build.dust_share = 0.5;
+  even.board.build.dust_loss = 0.8;
+  std::vector<double> levels(64, 1000.0);
+  for (std::size_t m = 0; m < 64; m += 2) levels[m] = 600.0;
+  EffectRig dusty = even;
+  dusty.look_at(levels);
+  CHECK(even.bound("crosstalk") >= dusty.change({"crosstalk"}));
+}

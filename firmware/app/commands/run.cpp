@@ -149,8 +149,8 @@ Result<void> BoardRun::make_eye() {
   const std::int64_t begin_ns = session_.clock().now_ns();
   const recon::Progress progress = session_.progress();
   progress(options_.replays() ? "recording" : board_.source.simulated() ? "simulated eye" : "eye", 0.0, 0.0);
-  source_ = TRY(RunSource::make(options_, board_, scene_, frames(), session_.clock(), progress,
-                                [&stop = session_.stop_requested()] { return !stop.load(std::memory_order_relaxed); }));
+  source_ = TRY(RunSource::make(options_, board_, scene_, frames(), session_.clock(), progress));
+  source_->render_while([&stop = session_.stop_requested()] { return !stop.load(std::memory_order_relaxed); });
   report_.source = source_->name();
   if (!source_->mismatch().empty()) choice_notes_.push_back(source_->mismatch());
   TRY(choose_eye(progress));

@@ -88,8 +88,7 @@ Result<std::unique_ptr<recording::RecordingSource>> with_recorder(const Recordin
 }
 
 Result<RunSource> RunSource::make(const RunOptions& options, const Board& board, const sim::Scene& scene,
-                                  std::uint64_t frames, hal::Clock& clock, const recon::Progress& progress,
-                                  std::function<bool()> go_on) {
+                                  std::uint64_t frames, hal::Clock& clock, const recon::Progress& progress) {
   RunSource made;
   if (options.replays()) {
     auto replay = TRY(recording::ReplaySource::open(options.replay, options.pace(), clock));
@@ -99,7 +98,7 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
     made.eye_.source = std::move(replay);
     return made;
   }
-  EyeWanted wanted{scene, options.seed, options.lossless, std::nullopt, progress, std::move(go_on)};
+  EyeWanted wanted{scene, options.seed, options.lossless, std::nullopt, progress};
   // Without a limit the frames read ahead of the last one would be made only to be thrown away.
   if (options.lossless && frames > 0 && !options.check_every_s) wanted.frame_limit = frames;
   if (options.check_every_s && board.source.simulated()) {
@@ -107,6 +106,11 @@ Result<RunSource> RunSource::make(const RunOptions& options, const Board& board,
   }
   made.eye_ = TRY(board_eye(board, std::move(wanted), clock));
   return made;
+}
+
+void RunSource::render_while(std::function<bool()> go_on) {
+  if (eye_.simulated == nullptr) return;
+  eye_.simulated->watch([go_on = std::move(go_on)](std::string_view, double) { return go_on(); });
 }
 
 void RunSource::add_checks(CheckSettings settings, hal::Clock& clock) {

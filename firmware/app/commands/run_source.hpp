@@ -50,7 +50,9 @@ class RunSource {
   /// ReplaySource::open(); mismatch (a recording of another number of channels or depth than the board's).
   [[nodiscard]] static hal::Result<RunSource> make(const RunOptions& options, const Board& board,
                                                    const sim::Scene& scene, std::uint64_t frames, hal::Clock& clock,
-                                                   const recon::Progress& progress, std::function<bool()> go_on);
+                                                   const recon::Progress& progress);
+  /// A simulated eye's frame that is rendered is given up once this is false.
+  void render_while(std::function<bool()> go_on);
   /// Frames of checks are taken out of what is run and recorded. Before a recording is begun.
   void add_checks(CheckSettings settings, hal::Clock& clock);
 

@@ -102,13 +102,14 @@ Explanation::Explanation(const sim::Plan& plan, double frames) : frames_(frames)
 
 /// What the plan adds up to, in a sentence.
 std::string sum_of(const sim::Plan& plan) {
-  const std::string measured = plan.sensitivity.measured ? "measured for this eye" : "of the paper's small eye";
   if (plan.noise_lsb == 0.0) return "There is no noise, which is all that anything could hide behind.\n";
+  const std::string measured = plan.sensitivity.measured ? "measured for this eye" : "of the paper's small eye";
   return fmt::format(
-      "Noise is {} LSB of {} and makes an NMSE of {} by estimate (sensitivity {}); what is left out adds at "
-      "most {}.\n",
+      "Noise is {} LSB of {} and makes an NMSE of {} by estimate (sensitivity {}); what is left out adds at most {} % "
+      "of "
+      "that.\n",
       significant(plan.noise_lsb, 2), significant(plan.signal_rms_lsb, 3), nmse_text(plan.noise_nmse), measured,
-      nmse_text(plan.left_out_nmse));
+      significant(100.0 * plan.left_out_nmse / plan.noise_nmse, 2));
 }
 
 /// All frames after each other, M values each.
@@ -132,33 +133,29 @@ void append(const hal::SampleBlock& block, const Board& board, bool codes, Sampl
 
 using Eye = std::unique_ptr<sim::SimulatedEye>;
 
-/// Every frame's rendering is told as part of all of them; `frame` is the one that is made.
-sim::RenderWatch watch_of(const SimulateRequest& o, const std::int64_t& frame, Session& session) {
-  return [&frame, frames = o.frames, progress = session.progress()](std::string_view, double share) {
-    return progress("samples", static_cast<double>(frame) + share, static_cast<double>(frames));
-  };
-}
-
-Result<Eye> eye_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o, sim::RenderWatch watch,
-                   Session& session, hal::Clock& clock) {
+Result<Eye> eye_of(const Board& board, const sim::Scene& scene, const SimulateRequest& o, Session& session,
+                   hal::Clock& clock) {
   sim::Scene seen = scene;
   for (const sim::Effect* effect : sim::effects()) {
     if (o.noise_free && effect->noise) seen.effects[std::string(effect->name)] = sim::Forced::off;
   }
   sim::SimulatedEyeSettings settings = simulated_eye_settings(board, std::move(seen), o.seed);
   settings.planning.budget.rounded = o.codes || !o.noise_free;
-  settings.watch = std::move(watch);
   auto eye = planned_eye(board, std::move(settings), clock, session.progress());
   session.end_progress();
   return eye;
 }
 
-Result<Samples> take(const Board& board, sim::SimulatedEye& eye, const SimulateRequest& o, std::int64_t& f,
-                     Session& session) {
+Result<Samples> take(const Board& board, sim::SimulatedEye& eye, const SimulateRequest& o, Session& session) {
   TRY(eye.start());
+  std::int64_t f = 0;
+  eye.watch(
+      [&f, frames = static_cast<double>(o.frames), progress = session.progress()](std::string_view, double share) {
+        return progress("samples", static_cast<double>(f) + share, frames);
+      });
   const double lsb = board.sensor.lsb(), dark = board.sensor.dark_level_lsb;
   Samples samples;
-  for (f = 0; f < o.frames; ++f) {
+  for (; f < o.frames; ++f) {
     const std::size_t begin = samples.values.size();
     const auto block = eye.read(0);
     TRY(session.check_stop());
@@ -170,6 +167,7 @@ Result<Samples> take(const Board& board, sim::SimulatedEye& eye, const SimulateR
       if (!std::isnan(value)) value = static_cast<float>((levels[c] - dark) * lsb);
     }
   }
+  eye.watch({});
   session.end_progress();
   return samples;
 }
@@ -242,7 +240,7 @@ Figures report_of(const Board& board, const sim::Scene& scene, const sim::Plan& 
   }
   return f.tell(
       "[saturated channels in {saturated_frames:# frame}\n]"
-      "[{dead_channels:# dead channel} of NaN; --weights writes the weights that leave out what is dead\n]");
+      "[NaN for {dead_channels:# dead channel}; --weights writes the weights that leave them out\n]");
 }
 
 /// Writes the samples of a board's simulated eye: float32, (M,) for one frame and (frames, M) for more, by ommatidium,
@@ -255,9 +253,8 @@ Result<void> simulate(const SimulateRequest& request, Session& session) {
   for (const std::string& file : {request.out, request.truth, request.weights, request.png, request.gallery})
     TRY(try_output(file));
   hal::VirtualClock clock;
-  std::int64_t frame = 0;
-  const Eye eye = TRY(eye_of(board, scene, request, watch_of(request, frame, session), session, clock));
-  const Samples samples = TRY(take(board, *eye, request, frame, session));
+  const Eye eye = TRY(eye_of(board, scene, request, session, clock));
+  const Samples samples = TRY(take(board, *eye, request, session));
   if (!request.gallery.empty()) {
     const GalleryRequest wanted{request.gallery, static_cast<std::uint64_t>(request.frames) - 1, request.seed};
     TRY(write_effect_gallery(board, scene, wanted, session.progress()));

@@ -113,6 +113,36 @@ TEST_CASE("a picture from a PNG file is a scene, and one of other proportions is
   CHECK(json["quality"]["nmse"].get<double>() < 0.5);
 }
 
+TEST_CASE("frames before a black scene have no quality, and the others theirs") {
+  const CopiedBoard board;
+  const auto scene = board.outside("scene.toml").string(), sheet = board.outside("sheet.png").string();
+  const auto run_before = [&](const std::string& motion) {
+    std::ofstream(scene) << "[scene]\nduration_s = 10\n[[surface]]\npicture = \"white\"\nwidth_mm = 2\nheight_mm = 8\n"
+                         << "x_mm = -5.01\n"
+                         << motion;
+    return test::compueye(
+        board.run_arguments({"--frames", "20", "--lossless", "--scene", scene, "--sheet", sheet, "--json"}));
+  };
+  // At 200 Hz a bar of 100 mm/s goes half a mm a frame, and is at the edge at first.
+  const Ended coming = run_before("velocity_mm_per_s = [100, 0, 0]\nstart_s = 0.05\n");
+  const auto json = nlohmann::json::parse(coming.out, nullptr, false);
+  REQUIRE_MESSAGE(!json.is_discarded(), coming.err);
+  CHECK(json["frames"]["delivered"] == 20);
+  const int judged = json["quality_frames"].get<int>();
+  CHECK(judged > 0);
+  CHECK(judged < 20);
+  CHECK(json["quality"]["nmse"].get<double>() < 1.0);
+  CHECK(contains(coming.err, "the scene was black in " + std::to_string(20 - judged) + " of 20 pictures"));
+
+  const Ended black = run_before("");
+  CHECK(black.exit_code == 0);
+  const auto none = nlohmann::json::parse(black.out, nullptr, false);
+  REQUIRE_MESSAGE(!none.is_discarded(), black.err);
+  CHECK(none["quality"].is_null());
+  CHECK(none["quality_frames"] == 0);
+  CHECK(firmware::read_png(sheet).has_value());
+}
+
 TEST_CASE("--distance moves the object with the reconstruction knowing, --scene-distance without") {
   const CopiedBoard board;
   const auto known = board.run_json({"--frames", "2", "--lossless", "--distance", "25"});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "firmware/eye/board.hpp"
@@ -141,6 +142,56 @@ TEST_CASE("--explain says which effects are on and off and why, and --json the s
     CHECK((effect["bound_lsb"] > 0.0) == called);
   }
   CHECK(object["left_out_nmse"] == 0.0);
+}
+
+TEST_CASE("what noise would hide is left out, unless there is none") {
+  const CopiedBoard board;
+  board.change("dark_level_lsb = 64", "dark_level_lsb = 64\ninl_lsb = 0.1");
+  const auto explained = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"simulate", "--board", board.path().string(), "--explain", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return nlohmann::json::parse(test::compueye(arguments).out);
+  };
+  const auto on = [](const nlohmann::json& object) {
+    for (const auto& effect : object["effects"]) {
+      if (effect["name"] == "nonlinearity") return effect["on"].get<bool>();
+    }
+    return false;
+  };
+  const auto noisy = explained({}), exact = explained({"--noise-free"}), coded = explained({"--noise-free", "--codes"});
+  CHECK_FALSE(on(noisy));
+  CHECK(noisy["left_out_nmse"].get<double>() > 0.0);
+  CHECK(on(exact));
+  CHECK(exact["noise_lsb"] == 0.0);
+  CHECK(exact["left_out_nmse"] == 0.0);
+  CHECK(coded["noise_lsb"].get<double>() == doctest::Approx(std::sqrt(1.0 / 12.0)));
+  const Ended text = test::compueye({"simulate", "--board", board.path().string(), "--explain", "--noise-free"});
+  CHECK(contains(text.out, "There is no noise"));
+}
+
+TEST_CASE("how much a reconstruction bears is measured once for a scene") {
+  const CopiedBoard board;
+  board.change("dark_level_lsb = 64", "dark_level_lsb = 64\ninl_lsb = 0.1");
+  const auto kept = [&] {
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(board.cache())) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("sensitivity-")) files.push_back(name + bytes_of(entry.path()));
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+  };
+  const std::vector<std::string> arguments{"simulate", "--board", board.path().string(), "--explain", "--json"};
+  const Ended first = test::compueye(arguments);
+  CHECK(nlohmann::json::parse(first.out)["sensitivity_measured"] == true);
+  const auto files = kept();
+  REQUIRE(files.size() == 1);
+  CHECK(test::compueye(arguments).out == first.out);
+  CHECK(kept() == files);
+  // A lambda of 0 by hand is another solver than one by the rule.
+  board.change("iterations = 200", "iterations = 200\nlambda = 0");
+  CHECK(test::compueye(arguments).exit_code == 0);
+  CHECK(kept().size() == 2);
 }
 
 TEST_CASE("--png shows the samples where their ommatidia are, the largest white") {
