@@ -118,7 +118,7 @@ struct Simulation::Parts {
     exposed.reset();
     const double t_s = scene_s(frame);
     const bool done = workings.exposure.channels_in_turn ? integrate_in_turn(t_s) : integrate(t_s, signals, 0, 1);
-    if (!done) return hal::fail(hal::ErrorCode::interrupted, scene.name, "was not rendered to the end");
+    if (!done) return hal::fail(hal::ErrorCode::interrupted, scene.name, "its rendering was stopped");
     exposed = frame;
     return {};
   }

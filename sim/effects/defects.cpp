@@ -32,19 +32,26 @@ std::string calls_for(const Circumstances& c) {
          std::to_string(d.blinking.size()) + " blinking channels are listed";
 }
 
+double level_at_most(const Circumstances& c, int m) noexcept {
+  return margin * c.preview.levels[static_cast<std::size_t>(m)];
+}
+
 // Each listed channel by what its defect makes of it: the hot level, the difference to the stuck code, all of the level
-// where it blinks (half of the frames, so sqrt 2 too much).
-double bound(const Circumstances& c) {
+// where it blinks (half of the frames, so sqrt 2 too much). A stuck code takes the place of what a level has become.
+double bound_in_levels(const Circumstances& c) {
   const hal::DetectorSettings& d = c.board.detector;
-  const auto level = [&](int m) { return margin * c.preview.levels[static_cast<std::size_t>(m)]; };
+  double squares = static_cast<double>(d.hot.size()) * d.hot_lsb * d.hot_lsb;
+  for (const int m : d.blinking) squares += std::pow(level_at_most(c, m), 2);
+  return std::sqrt(squares / static_cast<double>(c.preview.levels.size()));
+}
+
+double bound(const Circumstances& c) {
   double squares = 0.0;
-  for (std::size_t k = 0; k < d.hot.size(); ++k) squares += d.hot_lsb * d.hot_lsb;
-  for (const int m : d.stuck) {
-    const double code = stuck_code(c.board, m), told = level(m) + c.board.sensor.dark_level_lsb;
+  for (const int m : c.board.detector.stuck) {
+    const double code = stuck_code(c.board, m), told = level_at_most(c, m) + c.board.sensor.dark_level_lsb;
     squares += std::pow(std::max(std::fabs(code - told), std::fabs(code - told / margin)), 2);
   }
-  for (const int m : d.blinking) squares += std::pow(level(m), 2);
-  return std::sqrt(squares / static_cast<double>(c.preview.levels.size()));
+  return std::hypot(bound_in_levels(c), std::sqrt(squares / static_cast<double>(c.preview.levels.size())));
 }
 
 void apply(const Circumstances& c, Workings& w) {
@@ -69,6 +76,7 @@ const Effect effect::defects{
     .bound = bound,
     .cost = [](const Circumstances& c) { return step_cost(c, 1.0); },
     .apply = apply,
+    .bound_in_levels = bound_in_levels,
 };
 
 }  // namespace compueye::sim

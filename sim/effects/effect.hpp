@@ -50,6 +50,8 @@ struct Effect {
   EffectCost (*cost)(const Circumstances&) = nullptr;
   /// Takes its part in the workings. Effects are applied in the order of the list.
   void (*apply)(const Circumstances&, Workings&) = nullptr;
+  /// The part of the bound that is in the levels which later effects are given. Null: all of it.
+  double (*bound_in_levels)(const Circumstances&) = nullptr;
 };
 
 /// All of them, in the order of light.

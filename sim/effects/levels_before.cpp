@@ -13,7 +13,7 @@ LevelsBefore levels_before(const Effect& effect, const Circumstances& c) {
   for (const Effect* each : effects()) {
     if (each == &effect) break;
     if (each->error == ErrorKind::offset || each->calls_for(c).empty()) continue;
-    const double bound = each->bound(c);
+    const double bound = each->bound_in_levels != nullptr ? each->bound_in_levels(c) : each->bound(c);
     if (each->error == ErrorKind::common_gain) {
       before.brighter += bound / std::max(c.preview.rms, 1e-12);
     } else {

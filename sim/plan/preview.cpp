@@ -87,7 +87,7 @@ hal::Result<Levels> levels_of(Looking& looking, Scene scene, const Glance& glanc
     return looking.watch("looking at the scene", (looking.done + share) / looking.looks);
   };
   if (!renderer.render(glance.t_s, levels, looking.watch ? Renderer::Watch(told) : Renderer::Watch())) {
-    return hal::fail(hal::ErrorCode::interrupted, scene.name, "was not looked at to the end");
+    return hal::fail(hal::ErrorCode::interrupted, scene.name, "the look at it was stopped");
   }
   looking.done += 1.0;
   for (double& level : levels) level /= board.sensor.lsb();

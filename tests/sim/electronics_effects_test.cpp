@@ -68,7 +68,9 @@ TEST_CASE("the bound of the multiplexer's memory knows of hot channels, gains, p
   };
   rig.board.detector.hot = {20};
   rig.board.detector.hot_lsb = 4000.0;
+  rig.board.detector.stuck = {41};  // its code, whatever it is, never comes by
   CHECK(check_with({"defects"}) > 50.0);
+  rig.board.detector.stuck.clear();
   rig.board.detector.hot.clear();
   rig.board.build.gain_spread = 0.05;
   check_with({"gain_spread"});
