@@ -68,8 +68,10 @@ TEST_CASE("the bound of the multiplexer's memory knows of hot channels, gains, p
   };
   rig.board.detector.hot = {20};
   rig.board.detector.hot_lsb = 4000.0;
-  rig.board.detector.stuck = {41};  // its code, whatever it is, never comes by
   CHECK(check_with({"defects"}) > 50.0);
+  const double without_stuck = rig.bound("mux_memory");
+  rig.board.detector.stuck = {7, 33, 41};  // their codes, whatever they are, never come by
+  CHECK(rig.bound("mux_memory") == without_stuck);
   rig.board.detector.stuck.clear();
   rig.board.detector.hot.clear();
   rig.board.build.gain_spread = 0.05;

@@ -54,6 +54,10 @@ TEST_CASE("a rendering that its watch gives up loses no frame, and one at the be
     CHECK(std::ranges::equal(block->codes, undisturbed->read(forever)->codes));
   }
   CHECK(told == "rendering");
+  told.clear();
+  CHECK(eye->noise_free(5).size() == 64);
+  CHECK(eye->levels_lsb(5).size() == 64);
+  CHECK(told.empty());  // of frame 5 all is there
   CHECK(eye->account().delivered == 6);
   CHECK(eye->account().produced == 6);
 

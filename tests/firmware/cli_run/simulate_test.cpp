@@ -194,6 +194,21 @@ TEST_CASE("how much a reconstruction bears is measured once for a scene") {
   CHECK(kept().size() == 2);
 }
 
+TEST_CASE("a white picture bears no more than another because it stands at the end of the box") {
+  const CopiedBoard board;
+  board.change("dark_level_lsb = 64", "dark_level_lsb = 64\ninl_lsb = 0.1");
+  const auto noise_nmse = [&] {
+    const Ended ended =
+        test::compueye({"simulate", "--board", board.path().string(), "--scene", "white", "--explain", "--json"});
+    const auto object = nlohmann::json::parse(ended.out);
+    CHECK(object["sensitivity_measured"] == true);
+    return object["noise_nmse"].get<double>();
+  };
+  const double at_the_end = noise_nmse();
+  board.change("box = [0, 1]", "box = [0, 2]");
+  CHECK(at_the_end / noise_nmse() == doctest::Approx(1.0).epsilon(0.1));
+}
+
 TEST_CASE("--png shows the samples where their ommatidia are, the largest white") {
   const CopiedBoard board;
   const auto png = board.outside("y.png");
