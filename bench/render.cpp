@@ -86,5 +86,13 @@ int main() {
   failures += measure("moving and tilted, random, behind a still one", scene, true, 3);
   std::swap(scene.surfaces[0].motion, scene.surfaces[1].motion);
   failures += measure("still and tilted, random, behind a moving one", scene, true, 3);
+  scene.surfaces[0].bands = {*line_art};
+  scene.surfaces[1].shape = sim::Shape::sphere;
+  for (const bool white : {false, true}) {
+    scene.surfaces[1].bands = {white ? hal::Image(640, 640, 1.0F) : *line_art};
+    const char* what =
+        white ? "still and tilted, behind a moving white ball" : "still and tilted, behind a moving ball of line art";
+    failures += measure(what, scene, true, 3);
+  }
   return failures == 0 ? 0 : 1;
 }

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "sim/render/constraint.hpp"
@@ -35,8 +38,13 @@ class CellIntegral {
     return sum;
   }
 
+  /// Of one cell of one value alone.
+  [[nodiscard]] double piece(const Cell& cell, double value) { return part(cell, value, constraints_.size(), 0); }
+
  private:
   enum class Decided { nothing, all, some };
+
+  static constexpr std::size_t rim_constraints = 16;  // more than that are left to the picture's own cells
 
   [[nodiscard]] Cell cell_of(int size, int row, int col) const {
     const int row0 = row * size, col0 = col * size;
@@ -87,6 +95,7 @@ class CellIntegral {
     if (decided == Decided::all && smooth(cell, d, level.nodes, level.total[index], level.uneven[index])) {
       return whole(level, index, cell);
     }
+    if (decided == Decided::some && level.one_value[index]) return part(cell, value_of(level, row, col), count, 0);
     const int finer = levels_left > 1 ? picture_.levels()[levels_left - 2].size : 1;
     const int each = level.size / finer;
     const int last_row = std::min((row + 1) * each, (picture_.rows() + finer - 1) / finer);
@@ -98,6 +107,10 @@ class CellIntegral {
     return sum;
   }
 
+  [[nodiscard]] double value_of(const PictureSums::Level& level, int row, int col) const {
+    return picture_.value(row * level.size, col * level.size);
+  }
+
   [[nodiscard]] double pixel_area() const { return picture_.pixel_width_mm() * picture_.pixel_height_mm(); }
 
   // The weight is like (1 + t / scale)^-3: its n-th Taylor coefficient is (n+1)(n+2)/2 scale^-n. Interpolation through
@@ -105,7 +118,7 @@ class CellIntegral {
   // integrated to twice the order.
   [[nodiscard]] bool smooth(const Cell& cell, const hal::Vec3& d, int nodes, double total, double uneven) const {
     if (map_.even()) return true;
-    const double ratio = map_.radius(cell) / map_.scale_mm(cell, d);
+    const double ratio = map_.unevenness(cell, d);
     if (!(ratio < 0.5)) return negligible(cell, d, total);
     double power = 1.0;
     for (int k = 0; k < nodes; ++k) power *= 0.5 * ratio;
@@ -135,27 +148,31 @@ class CellIntegral {
     return sum * pixel_area();
   }
 
-  /// Mean weight over a cell by 2 x 2 Gauss points.
-  [[nodiscard]] double mean_weight(const Cell& cell) const {
-    constexpr double off = 0.28867513459481288;
+  /// Mean weight over a cell by nodes x nodes Gauss points.
+  [[nodiscard]] double mean_weight(const Cell& cell, int nodes = 2) const {
+    const GaussRule& rule = gauss_rule(nodes);
     double sum = 0.0;
-    for (const double sx : {-off, off}) {
-      for (const double sy : {-off, off}) {
-        const double x = cell.x + sx * cell.width, y = cell.y + sy * cell.height;
-        sum += map_.weight(x, y, map_.at(x, y));
+    for (std::size_t j = 0; j < static_cast<std::size_t>(nodes); ++j) {
+      const double y = cell.y + 0.5 * cell.height * rule.at[j];
+      for (std::size_t k = 0; k < static_cast<std::size_t>(nodes); ++k) {
+        const double x = cell.x + 0.5 * cell.width * rule.at[k];
+        sum += rule.weight[j] * rule.weight[k] * map_.weight(x, y, map_.at(x, y));
       }
     }
     return 0.25 * sum;
   }
 
-  /// A pixel or a part of one.
+  /// A cell of one value: tiles of a picture that are even, pixels, and parts of both.
   [[nodiscard]] double part(const Cell& cell, double value, std::size_t count, int depth) {
     const hal::Vec3 d = map_.at(cell.x, cell.y);
     const Decided decided = decide(cell, d, count);
     if (decided == Decided::nothing) return 0.0;
     const double area = cell.width * cell.height;
-    if (decided == Decided::all && even_cell(cell, d, value)) {
-      return map_.even() ? value * area * map_.weight(cell.x, cell.y, d) : value * area * mean_weight(cell);
+    if constexpr (Map::has_rim) {
+      if (map_.at_rim(cell) && count + 4 <= rim_constraints) return rim(cell, value, count);
+    }
+    if (decided == Decided::all) {
+      if (const int nodes = nodes_for(cell, d, value); nodes > 0) return value * area * weight_by(nodes, cell, d);
     }
     if (decided == Decided::some) {
       double light = 0.0;
@@ -172,12 +189,31 @@ class CellIntegral {
     return sum;
   }
 
-  [[nodiscard]] bool even_cell(const Cell& cell, const hal::Vec3& d, double value) const {
-    if (map_.even()) return true;
-    const double ratio = map_.radius(cell) / map_.scale_mm(cell, d);
+  /// The same in the rim's own map, the cell's sides being four more constraints.
+  [[nodiscard]] double rim(const Cell& cell, double value, std::size_t count) const {
+    const auto map = map_.rim_map(cell);
+    std::array<Constraint, rim_constraints> all;
+    std::copy_n(constraints_.begin(), count, all.begin());
+    for (const HalfSpace& side : map.sides(cell)) all[count++] = Constraint(side);
+    return CellIntegral<std::remove_const_t<decltype(map)>>(picture_, map, {all.data(), count}, tolerance_)
+        .piece(map.about(cell), value);
+  }
+
+  /// Gauss points each way that give the cell's mean weight; 0: too many.
+  [[nodiscard]] int nodes_for(const Cell& cell, const hal::Vec3& d, double value) const {
+    if (map_.even()) return 1;
+    const double ratio = map_.unevenness(cell, d);
     const double light = value * cell.width * cell.height * map_.most_weight(cell, d);
-    if (!(ratio < 0.5)) return light <= 2e-3 * tolerance_ || cell.width * cell.height <= 1e-18;
-    return light * ratio * ratio * ratio * ratio <= 3e-5 * tolerance_;
+    if (!(ratio < 0.5)) return light <= 2e-3 * tolerance_ || cell.width * cell.height <= 1e-18 ? 2 : 0;
+    double power = light * ratio * ratio;
+    for (int nodes = 2; nodes <= 5; ++nodes) {
+      power *= ratio * ratio;
+      if (power <= 3e-5 * tolerance_) return nodes;
+    }
+    return 0;
+  }
+  [[nodiscard]] double weight_by(int nodes, const Cell& cell, const hal::Vec3& d) const {
+    return nodes == 1 ? map_.weight(cell.x, cell.y, d) : mean_weight(cell, nodes);
   }
 
   /// A cell that an edge meets, when it is simple enough or small enough to be cut at once.
@@ -189,29 +225,33 @@ class CellIntegral {
     const bool small = most <= 2e-3 * tolerance_ || depth >= 40;
     if (map_.there(cell) != 1.0) {
       if (!small) return false;
+      find_open(d, map_.radius(cell), count);
       light = margin_at(cell, cell.x, cell.y, count) > 0.0 ? value * area * middle_weight : 0.0;
       return true;
     }
+    find_open(d, map_.radius(cell), count);
     const double hw = 0.5 * cell.width, hh = 0.5 * cell.height;
     const CornerMargins margins{
         {margin_at(cell, cell.x - hw, cell.y - hh, count), margin_at(cell, cell.x + hw, cell.y - hh, count),
          margin_at(cell, cell.x + hw, cell.y + hh, count), margin_at(cell, cell.x - hw, cell.y + hh, count)},
         margin_at(cell, cell.x, cell.y, count)};
-    const bool single = count == 1 && constraints_[0].smooth();
+    const bool single = count == 1 && Constraint::one_edge(open_[0]);
     const double bend = margins.bend();
     if (!small) {
       if (!single && !(bend < 1e-9)) return false;
       if (!(most * bend * bend <= 8e-3 * tolerance_)) return false;
-      const double ratio = map_.even() ? 0.0 : map_.radius(cell) / map_.scale_mm(cell, d);
+      const double ratio = map_.even() ? 0.0 : map_.unevenness(cell, d);
       if (!(most * ratio * ratio * ratio <= 2e-3 * tolerance_)) return false;
     }
     const int inside = margins.inside();
     if (inside == 0 || inside == 4) {
       // A cap of the edge may still stand in the cell, about as deep as the margin is bent.
       if (!small && nearest(margins) < 2.0 * bend && most * bend * std::sqrt(bend) > 2e-3 * tolerance_) return false;
-      if (inside == 4 && !small && !even_cell(cell, d, value)) return false;
-      light = inside == 4 ? value * area * (map_.even() ? middle_weight : mean_weight(cell)) : 0.0;
-      return true;
+      light = 0.0;
+      if (inside == 0) return true;
+      const int nodes = small ? 2 : nodes_for(cell, d, value);
+      light = value * area * weight_by(map_.even() ? 1 : nodes, cell, d);
+      return nodes > 0;
     }
     const bool straight = small || (Map::flat && count == 1 && constraints_[0].linear());
     const CoveredPart covered =
@@ -238,6 +278,11 @@ class CellIntegral {
     return covered.area * (map_.weight(covered.x, covered.y, map_.at(covered.x, covered.y)) + bent);
   }
 
+  /// Which of the constraints' conditions make an edge in the cell, for `margin_at`.
+  void find_open(const hal::Vec3& d, double radius, std::size_t count) {
+    for (std::size_t k = 0; k < std::min(count, open_.size()); ++k) open_[k] = constraints_[k].open(d, radius);
+  }
+
   [[nodiscard]] double margin_at(const Cell& cell, double x, double y, std::size_t count) const {
     const hal::Vec3 d = map_.at(x, y);
     double least = std::numeric_limits<double>::max();
@@ -248,7 +293,7 @@ class CellIntegral {
           continue;
         }
       }
-      least = std::min(least, constraints_[k].margin(d));
+      least = std::min(least, k < open_.size() ? constraints_[k].margin(d, open_[k]) : constraints_[k].margin(d));
     }
     return least;
   }
@@ -257,6 +302,7 @@ class CellIntegral {
   const Map& map_;
   std::span<Constraint> constraints_;
   double tolerance_;
+  std::array<unsigned, 16> open_{};
 };
 
 }  // namespace compueye::sim

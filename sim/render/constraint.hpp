@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "hal/vec3.hpp"
 
@@ -35,6 +37,20 @@ struct RectangleShadow {
     for (std::size_t k = 1; k < sides.size(); ++k) least = std::min(least, sides[k].margin(d));
     return least;
   }
+  /// Of the sides in `open` alone, one bit each.
+  [[nodiscard]] double margin(const hal::Vec3& d, unsigned open) const noexcept {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      if ((open >> k & 1U) != 0) least = std::min(least, sides[k].margin(d));
+    }
+    return least;
+  }
+  /// Sides that do not hold all over a piece.
+  [[nodiscard]] unsigned open(const hal::Vec3& d, double radius) const noexcept {
+    unsigned bits = 0;
+    for (std::size_t k = 0; k < sides.size(); ++k) bits |= sides[k].margin(d) < radius ? 1U << k : 0U;
+    return bits;
+  }
 };
 
 /// What a ball hides: its inside, and the cone that touches it from where it touches on.
@@ -45,6 +61,13 @@ struct BallShadow {
   double radius = 0.0;
   [[nodiscard]] double margin(const hal::Vec3& d) const noexcept {
     return std::max(std::min(cone.margin(d), beyond.margin(d)), radius - length(d - centre));
+  }
+  /// 1: all of a piece is beyond where the cone touches, and the ball within the cone there. Else 3.
+  [[nodiscard]] unsigned open(const hal::Vec3& d, double piece) const noexcept {
+    return beyond.margin(d) >= piece ? 1U : 3U;
+  }
+  [[nodiscard]] double margin(const hal::Vec3& d, unsigned open) const noexcept {
+    return open == 1U ? cone.margin(d) : margin(d);
   }
 };
 
@@ -90,12 +113,40 @@ struct Constraint {
     }
     return 0.0;
   }
-  /// Its edge has no corner, or few.
-  [[nodiscard]] bool smooth() const noexcept {
-    return kind == Kind::half_space || kind == Kind::cone || kind == Kind::not_by_itself;
+  /// The conditions that a piece of this radius about d does not decide, one bit each; all others hold all over it. An
+  /// edge that only one of them makes has no corner.
+  [[nodiscard]] unsigned open(const hal::Vec3& d, double radius) const noexcept {
+    switch (kind) {
+      case Kind::rectangle:
+      case Kind::not_rectangle:
+        return rectangle.open(d, radius);
+      case Kind::ball:
+      case Kind::not_ball:
+        return ball.open(d, radius);
+      default:
+        return 1U;
+    }
   }
-  /// Its margin is linear in d.
-  [[nodiscard]] bool linear() const noexcept { return kind == Kind::half_space; }
+  /// Has the sign of `margin(d)` within the piece that left `open`.
+  [[nodiscard]] double margin(const hal::Vec3& d, unsigned open) const noexcept {
+    switch (kind) {
+      case Kind::rectangle:
+        return rectangle.margin(d, open);
+      case Kind::not_rectangle:
+        return -rectangle.margin(d, open);
+      case Kind::ball:
+        return ball.margin(d, open);
+      case Kind::not_ball:
+        return -ball.margin(d, open);
+      default:
+        return margin(d);
+    }
+  }
+  [[nodiscard]] static bool one_edge(unsigned open) noexcept { return std::popcount(open) == 1; }
+  /// That edge is linear in d.
+  [[nodiscard]] bool linear() const noexcept {
+    return kind == Kind::half_space || kind == Kind::rectangle || kind == Kind::not_rectangle;
+  }
 };
 
 }  // namespace compueye::sim

@@ -5,31 +5,17 @@
 #include <limits>
 
 #include "sim/render/placed_surface.hpp"
+#include "sim/render/ray_weight.hpp"
 #include "sim/render/relief_heights.hpp"
+#include "sim/render/rim_map.hpp"
 
 namespace compueye::sim {
-
-/// How much a point of a surface counts for one ommatidium: the piece of the object plane that it covers as seen from
-/// the apex, times cos^obliquity of the ray's angle. With d from the apex to the point, Z the object plane's z -
-/// apex's, n dA the point's vector area away from the eye: Z^2 (n.d) / d_z^3 dA (d_z/|d|)^obliquity, in pixels of the
-/// object plane.
-struct RayWeight {
-  double scale = 1.0;  ///< Z^2 / area of an object pixel
-  double obliquity = 0.0;
-
-  [[nodiscard]] double operator()(const hal::Vec3& d, double facing) const noexcept {
-    if (!(d.z > 0.0) || !(facing > 0.0)) return 0.0;
-    const double inverse = 1.0 / d.z;
-    const double weight = scale * facing * inverse * inverse * inverse;
-    if (obliquity == 0.0) return weight;
-    return weight * std::pow(d.z * d.z / dot(d, d), 0.5 * obliquity);
-  }
-};
 
 class PlaneMap {
  public:
   static constexpr bool flat = true;  ///< what is linear in space is linear in the picture
   static constexpr bool hides_itself = false;
+  static constexpr bool has_rim = false;
 
   PlaneMap(const PlacedSurface& surface, const hal::Vec3& apex, const RayWeight& weight)
       : centre_(surface.centre - apex),
@@ -50,12 +36,12 @@ class PlaneMap {
     return weight_(d, facing_);
   }
   /// No point of the cell is farther from its middle.
-  [[nodiscard]] double radius(const Cell& cell) const noexcept { return 0.5 * std::hypot(cell.width, cell.height); }
-  /// Over about this length the weight changes by a factor: the distance of its nearest singularity.
-  [[nodiscard]] double scale_mm(const Cell& /*cell*/, const hal::Vec3& d) const noexcept {
+  [[nodiscard]] double radius(const Cell& cell) const noexcept { return half_diagonal(cell); }
+  /// The cell's size over the length on which the weight changes by a factor: the distance of its nearest singularity.
+  [[nodiscard]] double unevenness(const Cell& cell, const hal::Vec3& d) const noexcept {
     double scale = slope_ > 0.0 ? std::max(d.z, 0.0) / slope_ : std::numeric_limits<double>::infinity();
     if (weight_.obliquity != 0.0) scale = std::min(scale, length(d) / (1.0 + 0.25 * std::fabs(weight_.obliquity)));
-    return scale;
+    return radius(cell) / scale;
   }
   /// How much of the cell there is at all: 1 all, 0 none, else some.
   [[nodiscard]] double there(const Cell& /*cell*/) const noexcept { return 1.0; }
@@ -71,6 +57,7 @@ class BallMap {
  public:
   static constexpr bool flat = false;
   static constexpr bool hides_itself = false;  // HalfSpace says what is turned away
+  static constexpr bool has_rim = true;
 
   BallMap(const PlacedSurface& surface, const hal::Vec3& apex, const RayWeight& weight)
       : centre_(surface.centre - apex),
@@ -88,37 +75,47 @@ class BallMap {
   [[nodiscard]] double weight(double x, double y, const hal::Vec3& d) const noexcept {
     const double h = height(x * x + y * y);
     if (!(h > 0.0)) return 0.0;
-    return weight_(d, dot(centre_ - d, d) / h);  // (centre - point) / h is the vector area of dx dy, from the eye
+    return weight_.either_way(d, dot(centre_ - d, d) / h);  // (centre - point) / h is the vector area of dx dy, from the eye
   }
   /// The cell's middle may be turned away, or beyond its rim, where the rest of the cell is not.
   [[nodiscard]] double most_weight(const Cell& cell, const hal::Vec3& d) const noexcept {
-    const double size = std::hypot(cell.width, cell.height);
+    const double size = 2.0 * half_diagonal(cell);
     const double h = std::max(height(cell.x * cell.x + cell.y * cell.y), std::sqrt(radius_ * size));
     const double turned = std::max(0.0, dot(centre_ - d, d)) / radius_ + length(d) * radius(cell) / radius_;
     return weight_(d, turned * radius_ / h);
   }
   [[nodiscard]] double radius(const Cell& cell) const noexcept {
-    const double near = nearest(cell), far = farthest(cell), middle = std::hypot(cell.x, cell.y);
-    const double here = height(middle * middle);
-    const double rise = std::max(height(near * near) - here, here - height(far * far));
-    return std::hypot(0.5 * std::hypot(cell.width, cell.height), rise);
+    const double here = height(cell.x * cell.x + cell.y * cell.y), flat = half_diagonal(cell);
+    const double rise = std::max(height(nearest2(cell)) - here, here - height(farthest2(cell)));
+    return std::sqrt(flat * flat + rise * rise);
   }
-  [[nodiscard]] double scale_mm(const Cell& cell, const hal::Vec3& d) const noexcept {
-    const double rim = radius_ - std::hypot(cell.x, cell.y);
-    return std::max(0.0, std::min({rim, 0.5 * std::max(d.z, 0.0), 0.5 * length(d)}));
+  /// The root in the height has its singularity at the rim, in the picture's plane.
+  [[nodiscard]] double unevenness(const Cell& cell, const hal::Vec3& d) const noexcept {
+    const double rim = radius_ - std::sqrt(cell.x * cell.x + cell.y * cell.y);
+    return std::max(half_diagonal(cell) / std::max(rim, 0.0), radius(cell) / (0.5 * std::max(d.z, 0.0)));
   }
   [[nodiscard]] double there(const Cell& cell) const noexcept {
-    if (nearest(cell) >= radius_) return 0.0;
-    return farthest(cell) <= radius_ ? 1.0 : 0.5;
+    if (nearest2(cell) >= radius_ * radius_) return 0.0;
+    return farthest2(cell) <= radius_ * radius_ ? 1.0 : 0.5;
+  }
+  /// The cell meets the rim, or nearly, and is small against the ball.
+  [[nodiscard]] bool at_rim(const Cell& cell) const noexcept {
+    const double within = radius_ - 2.0 * half_diagonal(cell);
+    return within > 0.5 * radius_ && farthest2(cell) > within * within;
+  }
+  [[nodiscard]] RimMap rim_map(const Cell& cell) const noexcept {
+    return {centre_, right_, up_, away_, radius_, std::atan2(cell.y, cell.x), weight_};
   }
 
  private:
   [[nodiscard]] double height(double rho2) const noexcept { return std::sqrt(std::max(0.0, radius_ * radius_ - rho2)); }
-  [[nodiscard]] static double nearest(const Cell& c) noexcept {
-    return std::hypot(std::max(0.0, std::fabs(c.x) - 0.5 * c.width), std::max(0.0, std::fabs(c.y) - 0.5 * c.height));
+  [[nodiscard]] static double nearest2(const Cell& c) noexcept {
+    const double x = std::max(0.0, std::fabs(c.x) - 0.5 * c.width), y = std::max(0.0, std::fabs(c.y) - 0.5 * c.height);
+    return x * x + y * y;
   }
-  [[nodiscard]] static double farthest(const Cell& c) noexcept {
-    return std::hypot(std::fabs(c.x) + 0.5 * c.width, std::fabs(c.y) + 0.5 * c.height);
+  [[nodiscard]] static double farthest2(const Cell& c) noexcept {
+    const double x = std::fabs(c.x) + 0.5 * c.width, y = std::fabs(c.y) + 0.5 * c.height;
+    return x * x + y * y;
   }
 
   hal::Vec3 centre_, right_, up_, away_;
@@ -131,6 +128,7 @@ class ReliefMap {
  public:
   static constexpr bool flat = false;
   static constexpr bool hides_itself = true;
+  static constexpr bool has_rim = false;
 
   ReliefMap(const PlacedSurface& surface, const ReliefHeights& heights, const hal::Vec3& apex, const RayWeight& weight)
       : heights_(heights),
@@ -158,15 +156,15 @@ class ReliefMap {
   }
   [[nodiscard]] double radius(const Cell& cell) const noexcept {
     const ReliefHeights::Range range = heights_.range(cell);
-    return std::hypot(0.5 * std::hypot(cell.width, cell.height), range.hi - range.lo);
+    return std::hypot(half_diagonal(cell), range.hi - range.lo);
   }
-  /// Nought where the heights are not level and the cell is larger than a pixel: there is no smooth weight then.
-  [[nodiscard]] double scale_mm(const Cell& cell, const hal::Vec3& d) const noexcept {
+  /// Infinite where the heights are not level and the cell is larger than a pixel: there is no smooth weight then.
+  [[nodiscard]] double unevenness(const Cell& cell, const hal::Vec3& d) const noexcept {
     const ReliefHeights::Range range = heights_.range(cell);
-    const double rise = range.hi - range.lo, size = std::hypot(cell.width, cell.height);
-    if (rise > 0.0 && !heights_.within_pixel(cell)) return 0.0;
+    const double rise = range.hi - range.lo, size = 2.0 * half_diagonal(cell);
+    if (rise > 0.0 && !heights_.within_pixel(cell)) return std::numeric_limits<double>::infinity();
     const double steep = slope_ + rise / size + (weight_.obliquity != 0.0 ? 1.0 : 0.0);
-    return steep > 0.0 ? std::max(d.z, 0.0) / steep : std::numeric_limits<double>::infinity();
+    return std::hypot(0.5 * size, rise) * steep / std::max(d.z, 0.0);
   }
   [[nodiscard]] double there(const Cell& /*cell*/) const noexcept { return 1.0; }
 

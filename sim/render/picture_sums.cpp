@@ -28,6 +28,16 @@ std::array<double, most_nodes> lagrange_shares(const GaussRule& rule, int nodes,
   return shares;
 }
 
+bool all_alike(const hal::Image& picture, int row0, int col0, int down, int across) {
+  const float first = picture.at(row0, col0);
+  for (int row = row0; row < row0 + down; ++row) {
+    for (int col = col0; col < col0 + across; ++col) {
+      if (picture.at(row, col) != first) return false;
+    }
+  }
+  return true;
+}
+
 /// One row of shares a pixel of a tile `count` pixels long.
 std::vector<std::array<double, most_nodes>> pixel_shares(int nodes, int count) {
   std::vector<std::array<double, most_nodes>> shares;
@@ -67,13 +77,13 @@ PictureSums::PictureSums(const hal::Image& picture, double width_mm, double heig
   if (!tiles) return;
   int size = 4;
   while (true) {
-    add_level(size);
+    add_level(picture, size);
     if (size >= std::max(rows_, cols_)) return;
     size *= 4;
   }
 }
 
-void PictureSums::add_level(int size) {
+void PictureSums::add_level(const hal::Image& picture, int size) {
   Level level;
   level.size = size;
   level.rows = (rows_ + size - 1) / size;
@@ -109,6 +119,7 @@ void PictureSums::add_level(int size) {
     level.masses.insert(level.masses.end(), masses.begin(), masses.end());
     level.total.push_back(total);
     level.uneven.push_back(uneven);
+    level.one_value.push_back(all_alike(picture, row0, col0, down, across));
   }
   levels_.push_back(std::move(level));
 }

@@ -38,8 +38,9 @@ class PictureSums {
     int size = 0;  ///< pixels across and down, fewer at the picture's right and lower edges
     int rows = 0, cols = 0, nodes = 0;
     std::vector<double> masses;
-    std::vector<double> total;   ///< of the pixels of each tile
-    std::vector<double> uneven;  ///< sum of |masses - masses of an even tile of that total|: 0 for an even tile
+    std::vector<double> total;    ///< of the pixels of each tile
+    std::vector<double> uneven;   ///< sum of |masses - masses of an even tile of that total|: 0 for an even tile
+    std::vector<bool> one_value;  ///< all pixels of the tile are alike
   };
   /// From the finest; the last one is a single tile.
   [[nodiscard]] const std::vector<Level>& levels() const noexcept { return levels_; }
@@ -48,7 +49,7 @@ class PictureSums {
   [[nodiscard]] std::size_t start(int row) const noexcept {
     return static_cast<std::size_t>(row) * (static_cast<std::size_t>(cols_) + 1);
   }
-  void add_level(int size);
+  void add_level(const hal::Image& picture, int size);
 
   int rows_, cols_;
   double left_, top_, pixel_width_, pixel_height_;

@@ -13,6 +13,10 @@ struct Cell {
   double width = 0.0, height = 0.0;
 };
 
+[[nodiscard]] inline double half_diagonal(const Cell& cell) noexcept {
+  return 0.5 * std::sqrt(cell.width * cell.width + cell.height * cell.height);
+}
+
 /// How far a relief stands out at the corners of the pixels of its picture, mm; within a pixel bilinear between its
 /// four corners. The height map is taken as bilinear between the middles of its own pixels, level beyond the outermost.
 class ReliefHeights {

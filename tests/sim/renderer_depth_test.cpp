@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "sim/random/random.hpp"
@@ -135,6 +136,54 @@ TEST_CASE("balls agree with traced rays, hide and are hidden") {
   const std::vector<double> signals = rendered(rig, scene, at_depth(true));
   CHECK(off_traced(rig, scene, signals, true) < traced_share);
   if (!test::sanitized) CHECK(largest_difference(signals, rendered(rig, scene, at_depth(true, 3e-5))) < 3e-3);
+}
+
+// Much of each ball's rim is in sight, and tiles of one value meet edges of all kinds.
+TEST_CASE("even balls seen from aside agree with traced rays, and with a hundredth of the tolerance") {
+  const RenderRig rig = eye_of(50.0);
+  for (const bool half_black : {false, true}) {
+    CAPTURE(half_black);
+    Scene scene;
+    scene.surfaces.push_back(sheet(64, 60.0, 25.0, 1));
+    scene.surfaces[0].bands = {hal::Image(64, 64, 0.5F)};
+    scene.surfaces[0].pose.tilt_rad = 20.0 * deg;
+    scene.surfaces.push_back(sheet(96, 9.0, 10.0, 2));
+    Surface& ball = scene.surfaces[1];
+    ball.shape = Shape::sphere;
+    ball.bands = {hal::Image(96, 96, 1.0F)};
+    for (int row = 0; half_black && row < 96; ++row) {
+      for (int col = 0; col < 37; ++col) ball.bands[0].at(row, col) = 0.0F;
+    }
+    ball.pose.centre_mm = {3.0, 1.0, 0.0};
+    ball.pose.tilt_rad = 25.0 * deg;
+    scene.surfaces.push_back(sheet(3, 4.0, 4.0, 5));
+    scene.surfaces[2].pose.centre_mm = {1.0, 2.0, 0.0};
+    const std::vector<double> signals = rendered(rig, scene, at_depth(true), 0.5);
+    CHECK(off_traced(rig, scene, signals, true, 0.5) < traced_share);
+    if (test::sanitized) continue;
+    CHECK(largest_difference(signals, rendered(rig, scene, at_depth(true, 3e-5), 0.5)) < 3e-3);
+  }
+}
+
+// Seen from straight ahead its outline is a circle on the object plane, of which no pixel is hidden.
+TEST_CASE("a white ball straight ahead shines as its outline on the object plane does") {
+  RenderRig rig = eye_of(50.0);
+  rig.eye.rows = rig.eye.columns = 1;
+  Scene scene;
+  scene.surfaces.push_back(sheet(1, 9.0, 14.0, 1));
+  scene.surfaces[0].shape = Shape::sphere;
+  scene.surfaces[0].bands = {hal::Image(1, 1, 1.0F)};
+  const double apex = rig.eye.apex(0, 0).z, plane = rig.object.z_mm(rig.eye) - apex;
+  const double distance = rig.eye.radius_mm + rig.eye.lens_height_mm + 14.0 - apex;
+  const double radius = plane * std::tan(std::asin(4.5 / distance));
+  const double expected =
+      std::numbers::pi * radius * radius / (rig.object.pixel_width_mm() * rig.object.pixel_height_mm());
+  for (const int pixels : {1, 7, 64, 100}) {
+    CAPTURE(pixels);
+    scene.surfaces[0].bands = {hal::Image(pixels, pixels, 1.0F)};
+    CHECK(std::fabs(rendered(rig, scene, at_depth(false))[0] - expected) < 3e-3);
+    CHECK(std::fabs(rendered(rig, scene, at_depth(false, 3e-5))[0] - expected) < 3e-5);
+  }
 }
 
 TEST_CASE("rays count less by the power of the cosine of their angle") {
