@@ -64,21 +64,25 @@ double change_mm2(const Circumstances& c, int m, const Surface& surface, const h
                                                                               : wide_change_mm2(c, m, surface, change);
 }
 
+double mean_square(const hal::Image& change) noexcept {
+  double sum = 0.0;
+  for (const float each : change.pixels) sum += static_cast<double>(each) * static_cast<double>(each);
+  return sum / static_cast<double>(change.pixels.size());
+}
+
 }  // namespace
 
 double picture_change_lsb(const Circumstances& c, const Surface& surface, const hal::Image& change) {
   const double unit = c.board.object.pixel_width_mm() * c.board.object.pixel_height_mm() * c.board.sensor.lsb();
   hal::Image ones(1, 1);
   ones.pixels = {1.0F};
-  double mean_square = 0.0, squares = 0.0, areas = 0.0, looks = 0.0;
-  for (const float each : change.pixels) mean_square += static_cast<double>(each) * static_cast<double>(each);
-  mean_square /= static_cast<double>(change.pixels.size());
+  double squares = 0.0, areas = 0.0, looks = 0.0;
   for (int m = 0; m < c.board.eye.ommatidia(); ++m) {
     squares += std::pow(change_mm2(c, m, surface, change), 2);
     areas += std::pow(change_mm2(c, m, surface, ones), 2);
     looks += std::pow(std::min(look_at(c, m).area_mm2, surface.width_mm * surface.height_mm), 2);
   }
-  if (!stays(c, surface)) squares = (areas > 0.0 ? areas : looks) * mean_square;
+  if (!stays(c, surface)) squares = (areas > 0.0 ? areas : looks) * mean_square(change);
   return margin / unit * std::sqrt(squares / c.board.eye.ommatidia());
 }
 

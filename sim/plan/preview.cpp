@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "hal/try.hpp"
 #include "sim/render/renderer.hpp"
@@ -17,16 +19,23 @@ hal::Image coarsened(const hal::Image& picture, double width_mm, double height_m
     return static_cast<int>(std::clamp(std::ceil(side_mm / pixel_mm), 1.0, static_cast<double>(at_most)));
   };
   hal::Image coarse(pixels(height_mm, picture.rows), pixels(width_mm, picture.cols));
-  std::vector<int> counts(coarse.pixels.size());
-  for (int row = 0; row < picture.rows; ++row) {
-    for (int col = 0; col < picture.cols; ++col) {
-      const int r = static_cast<int>(static_cast<long>(row) * coarse.rows / picture.rows);
-      const int c = static_cast<int>(static_cast<long>(col) * coarse.cols / picture.cols);
-      coarse.at(r, c) += picture.at(row, col);
-      ++counts[static_cast<std::size_t>(r) * static_cast<std::size_t>(coarse.cols) + static_cast<std::size_t>(c)];
+  const auto first = [](int block, int blocks, int all) {
+    return static_cast<int>((static_cast<long>(block) * all + blocks - 1) / blocks);
+  };
+  std::vector<float> columns(static_cast<std::size_t>(picture.cols));
+  for (int r = 0; r < coarse.rows; ++r) {
+    const int top = first(r, coarse.rows, picture.rows), bottom = first(r + 1, coarse.rows, picture.rows);
+    std::fill(columns.begin(), columns.end(), 0.0F);
+    for (int row = top; row < bottom; ++row) {
+      const float* pixels_of_row = picture.pixels.data() + static_cast<std::size_t>(row) * columns.size();
+      for (std::size_t col = 0; col < columns.size(); ++col) columns[col] += pixels_of_row[col];
+    }
+    for (int c = 0; c < coarse.cols; ++c) {
+      const int left = first(c, coarse.cols, picture.cols), right = first(c + 1, coarse.cols, picture.cols);
+      const float sum = std::accumulate(columns.begin() + left, columns.begin() + right, 0.0F);
+      coarse.at(r, c) = sum / static_cast<float>((bottom - top) * (right - left));
     }
   }
-  for (std::size_t n = 0; n < counts.size(); ++n) coarse.pixels[n] /= static_cast<float>(counts[n]);
   return coarse;
 }
 
@@ -38,14 +47,14 @@ double look_mm(const EyeToSimulate& board) {
 /// Reliefs stay as they are: what hides behind a step is told by how steep it is, and what a step moves by how fine
 /// its picture is.
 Scene coarse_scene(const EyeToSimulate& board, const Scene& scene) {
-  Scene coarse = lit(scene);
+  Scene coarse = scene;
   for (Surface& surface : coarse.surfaces) {
     if (surface.shape == Shape::relief) continue;
     for (hal::Image& band : surface.bands) {
       band = coarsened(band, surface.width_mm, surface.height_mm, look_mm(board));
     }
   }
-  return coarse;
+  return lit(std::move(coarse));
 }
 
 /// Several surfaces each other, a relief itself.

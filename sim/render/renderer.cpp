@@ -90,7 +90,9 @@ hal::Image repeated(const hal::Image& picture, int down, int across) {
 
 /// A relief's heights change from pixel to pixel, so its picture is at least as fine as they are. Its edges stay sharp.
 PictureSums sums_of(const Surface& surface, const PlacedSurface& place, const RenderSettings& settings, bool tiles) {
-  hal::Image picture = surface.grey();
+  hal::Image made;
+  if (surface.bands.size() != 1) made = surface.grey();
+  const hal::Image& picture = surface.bands.size() != 1 ? made : surface.picture();
   double width = 2.0 * place.half_width, height = 2.0 * place.half_height;
   if (place.shape == Shape::relief) {
     const auto times = [](int wanted, int have) { return std::max(1, (wanted + have - 1) / have); };
@@ -101,7 +103,7 @@ PictureSums sums_of(const Surface& surface, const PlacedSurface& place, const Re
     width *= (picture.cols + 2.0) / picture.cols;
     height *= (picture.rows + 2.0) / picture.rows;
     const int parts = parts_for_blur(picture, settings.pixel_edge_blur);
-    picture = with_blurred_edges(picture, settings.pixel_edge_blur, parts);
+    return {with_blurred_edges(picture, settings.pixel_edge_blur, parts), width, height, tiles};
   }
   return {picture, width, height, tiles};
 }
