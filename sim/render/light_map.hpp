@@ -75,7 +75,8 @@ class BallMap {
   [[nodiscard]] double weight(double x, double y, const hal::Vec3& d) const noexcept {
     const double h = height(x * x + y * y);
     if (!(h > 0.0)) return 0.0;
-    return weight_.either_way(d, dot(centre_ - d, d) / h);  // (centre - point) / h is the vector area of dx dy, from the eye
+    return weight_.either_way(
+        d, dot(centre_ - d, d) / h);  // (centre - point) / h is the vector area of dx dy, from the eye
   }
   /// The cell's middle may be turned away, or beyond its rim, where the rest of the cell is not.
   [[nodiscard]] double most_weight(const Cell& cell, const hal::Vec3& d) const noexcept {
