@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "tests/drivers/device/converter_faults.hpp"
 #include "tests/drivers/device/converter_rig.hpp"
 #include "tests/hal/sample_source_contract.hpp"
 #include "tests/memory/allocation_counter.hpp"
@@ -19,7 +20,6 @@ using frontend::FrontEndFault;
 using frontend::FrontEndFaultKind;
 using test::ms;
 
-constexpr std::int64_t longest_ns = 150 * ms;  // of faults
 #if defined(COMPUEYE_SANITIZED)
 constexpr unsigned seeds = 4;
 #else
@@ -51,66 +51,12 @@ hal::tests::SourceUnderTest converters_under_test(const ConverterEye& eye) {
   return test;
 }
 
-/// One of a kind, as a seed has it.
-FrontEndFault drawn(FrontEndFaultKind kind, std::int64_t period_ns, std::mt19937& random) {
-  const auto pick = [&](std::int64_t from, std::int64_t to) {
-    return std::uniform_int_distribution<std::int64_t>(from, to)(random);
-  };
-  FrontEndFault fault{.kind = kind, .at_ns = pick(0, 3 * period_ns), .count = static_cast<std::uint64_t>(pick(1, 5))};
-  switch (kind) {
-    case FrontEndFaultKind::edges_stuck:
-    case FrontEndFaultKind::miso_low:
-    case FrontEndFaultKind::miso_high:
-      fault.duration_ns = pick(period_ns, longest_ns);
-      break;
-    case FrontEndFaultKind::edges_doubled:
-      fault.value = pick(100, period_ns / 3);
-      break;
-    case FrontEndFaultKind::edge_storm:
-      fault.value = pick(2'000, period_ns / 4);
-      fault.duration_ns = pick(period_ns, 30 * period_ns);
-      break;
-    case FrontEndFaultKind::slow_bus:
-      fault.value = pick(1'000, 3 * period_ns);
-      break;
-    case FrontEndFaultKind::clock_drift:
-      fault.value = pick(-2000, 2000);
-      break;
-    case FrontEndFaultKind::brown_out:
-      fault.value = pick(0, 7) + (pick(0, 29) << 8);
-      break;
-    case FrontEndFaultKind::gone:
-      fault.duration_ns = pick(1 * ms, longest_ns);
-      break;
-    default:
-      fault.value = pick(0, 1000);
-  }
-  return fault;
-}
-
-/// Whether whatever such a fault makes of a frame is told.
-bool told_by(const ConverterEye& eye, FrontEndFaultKind kind) {
-  switch (kind) {
-    case FrontEndFaultKind::bit_error:
-      return eye.tells_bits;
-    case FrontEndFaultKind::clock_lost:
-    case FrontEndFaultKind::clock_doubled:
-    case FrontEndFaultKind::select_glitch:
-    case FrontEndFaultKind::brown_out:
-    case FrontEndFaultKind::miso_low:
-    case FrontEndFaultKind::miso_high:
-      return eye.tells_clocks;
-    default:
-      return true;
-  }
-}
-
 /// Streams through faults, from a rig that is started, until frames come whole for ten in a row; every block is right.
 void check_streams_through(ConverterRig& rig, bool codes_are_right) {
   std::optional<std::uint64_t> number;
   int whole_in_a_row = 0;
   const std::int64_t until_ns = rig.clock.now_ns() + 5 * test::second;
-  const std::int64_t faults_over_ns = rig.clock.now_ns() + longest_ns + 5 * rig.period_ns();
+  const std::int64_t faults_over_ns = rig.clock.now_ns() + longest_fault_ns + 5 * rig.period_ns();
   while (rig.clock.now_ns() < until_ns && (whole_in_a_row < 10 || rig.clock.now_ns() < faults_over_ns)) {
     const auto block = rig.next(50 * ms);
     CHECK(rig.source->account().balanced());
@@ -188,13 +134,30 @@ TEST_CASE("two and three faults at a time are got over") {
       for (int k = 0; k < 5; ++k) REQUIRE(rig.next());
       std::mt19937 random(seed);
       for (unsigned k = 0; k < 2 + seed % 2; ++k) {
-        auto kind = FrontEndFaultKind::other_chip;
-        while (kind == FrontEndFaultKind::other_chip) {
-          kind = static_cast<FrontEndFaultKind>(random() % frontend::front_end_fault_kind_count);
-        }
-        rig.inject(drawn(kind, rig.period_ns(), random));
+        rig.inject(drawn(any_kind(random), rig.period_ns(), random));
       }
       check_streams_through(rig, eye.tells_bits);
+    }
+  }
+}
+
+TEST_CASE("converters whose device files were gone stream again within a second of their return") {
+  for (const ConverterEye& eye : converter_eyes) {
+    for (const std::int64_t gone_ns : {5 * ms, 150 * ms, 1500 * ms, 10'000 * ms}) {
+      CAPTURE(eye.chip);
+      CAPTURE(gone_ns / ms);
+      ConverterRig rig(eye);
+      REQUIRE(rig.source->start());
+      REQUIRE(rig.next());
+      const std::int64_t back_ns = rig.clock.now_ns() + gone_ns;
+      rig.inject({.kind = FrontEndFaultKind::gone, .duration_ns = gone_ns});
+      while (rig.clock.now_ns() < back_ns) static_cast<void>(rig.next(50 * ms));
+      while (rig.source->recovering()) {
+        REQUIRE(rig.clock.now_ns() < back_ns + test::second);
+        static_cast<void>(rig.next(50 * ms));
+      }
+      CHECK(rig.next());
+      CHECK(rig.source->outages() == 1);
     }
   }
 }
