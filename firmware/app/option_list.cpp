@@ -20,6 +20,8 @@
 namespace compueye::firmware {
 namespace {
 
+namespace fs = std::filesystem;
+
 template <class T>
 std::optional<T> whole(std::string_view text) noexcept {
   // from_chars knows no plus sign, but people write one.
@@ -75,6 +77,28 @@ std::string meaning_of(const Setting& setting, bool of_board) {
     text += " (default " + quoted(*usual) + ")";
   }
   return of_board ? text + " (overrules the board's)" : text;
+}
+
+/// The file that a name means, whatever links lead to it and however it is spelled.
+std::string where(const std::string& name, bool stream) {
+  std::error_code error;
+  const auto behind = stream ? hal::Result<OutputTarget>() : output_target(name);  // of a link to nothing as well
+  const fs::path whole = fs::weakly_canonical(fs::absolute(behind ? behind->path : name, error), error);
+  return stream || error ? fs::path(name).lexically_normal().string() : whole.string();
+}
+
+/// The option whose value names this file, or the folder of a board whose file it is; empty if there is none.
+std::string reader_of(const std::string& output, const std::deque<Option>& rows) {
+  for (const Option& row : rows) {
+    const auto* target = std::get_if<Target>(&row.target);
+    const auto* text = target != nullptr ? std::get_if<std::string*>(target) : nullptr;
+    if (text == nullptr || row.writes != Writes::nothing || (*text)->empty()) continue;
+    std::error_code ignored;
+    for (const fs::path& read : {fs::path(**text), fs::path(**text) / "board.toml"}) {
+      if (fs::is_regular_file(read, ignored) && fs::equivalent(read, output, ignored)) return row.name;
+    }
+  }
+  return "";
 }
 
 }  // namespace
@@ -161,8 +185,11 @@ hal::Result<std::string> OptionList::stdout_owner() const {
       TRY(need(owner.empty(), row.name, "cannot go with " + owner + ": both would write to the standard output"));
       owner = row.name;
     }
-    const auto [at, first] = writer.emplace(std::filesystem::path(name).lexically_normal().string(), row.name);
+    const auto [at, first] = writer.emplace(where(name, stream.has_value()), row.name);
     TRY(need(first, row.name, fmt::format("is '{}', into which {} writes already", excerpt(name), at->second)));
+    const std::string reader = reader_of(name, rows_);
+    TRY(need(reader.empty(), row.name,
+             fmt::format("is '{}', which {} reads, expected another file", excerpt(name), reader)));
   }
   return owner;
 }

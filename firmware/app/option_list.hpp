@@ -111,8 +111,8 @@ class OptionList {
   [[nodiscard]] const std::deque<Option>& rows() const noexcept { return rows_; }
   [[nodiscard]] bool wants_json() const noexcept { return wants_json_; }
   /// Once the line is read: the option that has standard output to itself ("--json", or one whose file is "-"), empty
-  /// when the report may go there. Error usage at an option that would write into another's output, and at a folder
-  /// that is no folder but a stream.
+  /// when the report may go there. Error usage at an option that would write into another's output or over what another
+  /// one reads, and at a folder that is no folder but a stream.
   [[nodiscard]] hal::Result<std::string> stdout_owner() const;
 
  private:

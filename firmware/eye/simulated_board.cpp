@@ -21,9 +21,13 @@ recon::Response without_weak_rows(const recon::Response& response) {
   return response.without_rows(weak);
 }
 
-hal::Result<std::vector<float>> one_frame(const Board& narrow, const sim::Scene& scene, std::uint64_t seed) {
+hal::Result<std::vector<float>> one_frame(const Board& narrow, const sim::Scene& scene, std::uint64_t seed,
+                                          const sim::RenderWatch& watch) {
   hal::VirtualClock clock;
-  const auto eye = TRY(sim::SimulatedEye::create(simulated_eye_settings(narrow, scene, seed), clock));
+  sim::SimulatedEyeSettings settings = simulated_eye_settings(narrow, scene, seed);
+  settings.planning.watch = watch;
+  const auto eye = TRY(sim::SimulatedEye::create(std::move(settings), clock));
+  eye->watch(watch);
   Correction correction = TRY(Correction::create(correction_settings(narrow), eye->describe()));
   TRY(eye->start());
   const hal::SampleBlock block = TRY(eye->read(0));
@@ -72,7 +76,8 @@ std::optional<Board> conventional_board(const Board& board) {
   return narrow;
 }
 
-hal::Result<hal::Image> conventional_picture(const Board& board, const sim::Scene& scene, std::uint64_t seed) {
+hal::Result<hal::Image> conventional_picture(const Board& board, const sim::Scene& scene, std::uint64_t seed,
+                                             const sim::RenderWatch& watch) {
   const auto narrow = conventional_board(board);
   if (!narrow) {
     return hal::fail(hal::ErrorCode::unsupported, board.name,
@@ -80,7 +85,7 @@ hal::Result<hal::Image> conventional_picture(const Board& board, const sim::Scen
   }
   const recon::Response nominal = TRY(calib::nominal_response(narrow->eye, narrow->object));
   const auto image = TRY(recon::ConventionalImage::create(without_weak_rows(nominal)));
-  const std::vector<float> y = TRY(one_frame(*narrow, scene, seed));
+  const std::vector<float> y = TRY(one_frame(*narrow, scene, seed, watch));
   hal::Image picture(narrow->object.rows, narrow->object.cols);
   image.render(y, picture.pixels);
   return picture;

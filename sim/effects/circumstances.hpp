@@ -36,8 +36,8 @@ struct Preview {
   /// d level / d (mm that the scene moves) in x and y: rms and largest over the channels, the larger of the two.
   double gradient_rms = 0.0, gradient_largest = 0.0;
   double laplacian_rms = 0.0;  ///< of the second derivative by mm, the larger of x and y
-  /// Rms over channels and times of what changes when surfaces lie flat on the object plane, do not hide each other,
-  /// stand still. Absent: nobody looked, since nothing is like that.
+  /// Rms over channels, largest of the times, of what changes when surfaces lie flat on the object plane, do not hide
+  /// each other, stand still. Absent: nobody looked, since nothing is like that.
   std::optional<double> flat_change, shine_through_change, standstill_change;
 };
 

@@ -1,21 +1,10 @@
+#include "sim/effects/band_weights.hpp"
 #include "sim/effects/effect_list.hpp"
 #include "sim/effects/estimates.hpp"
 #include "sim/effects/picture_change.hpp"
 
 namespace compueye::sim {
 namespace {
-
-/// Of each band: response times spectrum (a display's own is white), sum 1; nothing where they have nothing in common.
-BandWeights weights(const Circumstances& c, const Surface& surface) noexcept {
-  BandWeights w{};
-  double sum = 0.0;
-  for (std::size_t b = 0; b < 3; ++b) {
-    w[b] = c.board.detector.spectral_response[b] * (surface.shines ? 1.0 : c.scene.light.spectrum[b]);
-    sum += w[b];
-  }
-  for (double& each : w) each = sum > 0.0 ? each / sum : 0.0;
-  return w;
-}
 
 bool coloured(const Surface& surface) noexcept {
   const std::vector<hal::Image>& bands = surface.bands;
@@ -24,7 +13,7 @@ bool coloured(const Surface& surface) noexcept {
 
 std::string calls_for(const Circumstances& c) {
   for (const Surface& surface : c.scene.surfaces) {
-    const BandWeights w = weights(c, surface);
+    const BandWeights w = band_weights(c.board, c.scene, surface);
     if (!coloured(surface) || w == even_bands) continue;
     return "'" + surface.name + "' is coloured, seen by " + figure(w[0]) + " red, " + figure(w[1]) + " green, " +
            figure(w[2]) + " blue";
@@ -38,7 +27,7 @@ double bound(const Circumstances& c) {
   for (const Surface& surface : c.scene.surfaces) {
     if (!coloured(surface)) continue;
     const double light = surface.shines ? 1.0 : c.scene.light.level;
-    BandWeights change = weights(c, surface);
+    BandWeights change = band_weights(c.board, c.scene, surface);
     for (std::size_t b = 0; b < 3; ++b) change[b] = light * (change[b] - even_bands[b]);
     sum += picture_change_lsb(c, surface, surface.weighed(change));
   }
@@ -47,7 +36,7 @@ double bound(const Circumstances& c) {
 
 void apply(const Circumstances& c, Workings& w) {
   for (Surface& surface : w.scene.surfaces) {
-    if (coloured(surface)) surface.bands = {surface.weighed(weights(c, surface))};
+    if (coloured(surface)) surface.bands = {surface.weighed(band_weights(c.board, c.scene, surface))};
   }
 }
 

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "hal/try.hpp"
+#include "sim/effects/band_weights.hpp"
+#include "sim/plan/times_to_look.hpp"
 #include "sim/render/renderer.hpp"
 
 namespace compueye::sim {
@@ -50,6 +52,7 @@ Scene coarse_scene(const EyeToSimulate& board, const Scene& scene) {
   Scene coarse = scene;
   for (Surface& surface : coarse.surfaces) {
     if (surface.shape == Shape::relief) continue;
+    if (surface.bands.size() == 3) surface.bands = {surface.weighed(band_weights(board, scene, surface))};
     for (hal::Image& band : surface.bands) {
       band = coarsened(band, surface.width_mm, surface.height_mm, look_mm(board));
     }
@@ -136,11 +139,11 @@ bool has_relief(const Scene& scene) {
 }
 
 /// By moving the scene to both sides. A relief takes longest and is as steep when it is pressed flat.
-hal::Result<void> add_slopes(Looking& looking, const Scene& scene, double t_s, Preview& preview) {
+hal::Result<void> add_slopes(Looking& looking, const Scene& scene, double t_s, const Levels& look, Preview& preview) {
   const double step = look_mm(looking.board) / 2.0;
   const bool pressed = has_relief(scene);
   Glance glance{.t_s = t_s, .depth = !pressed, .occlusion = !pressed};
-  const Levels middle = pressed ? TRY(levels_of(looking, scene, glance)) : preview.levels;
+  const Levels middle = pressed ? TRY(levels_of(looking, scene, glance)) : look;
   const auto moved = [&](double right, double up) {
     glance.right_mm = right;
     glance.up_mm = up;
@@ -177,48 +180,41 @@ bool lies_flat(const Scene& scene, const hal::ObjectPlane& object) {
                      [&](const Surface& surface) { return lies_on_the_plane(surface, object); });
 }
 
-/// Times to look at: a still scene's beginning, else some of what is judged, none of them on its beat.
-std::vector<double> times_of(const Scene& scene) {
-  if (scene.still()) return {0.0};
-  std::vector<double> times{0.0};
-  for (const double share : {0.13, 0.37, 0.61, 0.89}) times.push_back(share * scene.seconds_to_judge());
-  return times;
-}
-
-/// Rms over the times of what each of depth, occlusion and motion changes.
+/// What each of depth, occlusion and motion changes, at the time of which it is most: no one knows which frames of a
+/// scene will be taken.
 hal::Result<void> add_changes(Looking& looking, const Scene& scene, const std::vector<double>& times,
                               const std::vector<Levels>& looks, Preview& preview) {
   const bool flat = lies_flat(scene, looking.board.object), alone = !may_hide(scene);
   double of_depth = 0.0, of_occlusion = 0.0, of_motion = 0.0;
   for (std::size_t k = 0; k < times.size(); ++k) {
-    const auto count = static_cast<double>(times.size());
     if (!flat) {
       const Levels changed = TRY(levels_of(looking, scene, {.t_s = times[k], .depth = false}));
-      of_depth += std::pow(rms_between(looks[k], changed), 2) / count;
+      of_depth = std::max(of_depth, rms_between(looks[k], changed));
     }
     if (!alone) {
       const Levels changed = TRY(levels_of(looking, scene, {.t_s = times[k], .occlusion = false}));
-      of_occlusion += std::pow(rms_between(looks[k], changed), 2) / count;
+      of_occlusion = std::max(of_occlusion, rms_between(looks[k], changed));
     }
-    of_motion += std::pow(rms_between(looks[k], looks[0]), 2) / std::max(count - 1.0, 1.0);
+    of_motion = std::max(of_motion, rms_between(looks[k], looks[0]));
   }
-  if (!flat) preview.flat_change = std::sqrt(of_depth);
-  if (!alone) preview.shine_through_change = std::sqrt(of_occlusion);
-  if (!scene.still()) preview.standstill_change = std::sqrt(of_motion);
+  if (!flat) preview.flat_change = of_depth;
+  if (!alone) preview.shine_through_change = of_occlusion;
+  if (!scene.still()) preview.standstill_change = of_motion;
   return {};
 }
 
-/// At each time as it is, flat and without what hides, and from four sides, for a relief from the front as well.
+/// At each time as it is, flat and without what hides, and at two of what moves from four sides, for a relief from the
+/// front as well.
 double looks_at(const Scene& scene, const hal::ObjectPlane& object, std::size_t times) {
   const int each = 1 + (lies_flat(scene, object) ? 0 : 1) + (may_hide(scene) ? 1 : 0);
-  return static_cast<double>(times) * each + 4.0 + (has_relief(scene) ? 1.0 : 0.0);
+  return static_cast<double>(times) * each + (scene.still() ? 1.0 : 2.0) * (4.0 + (has_relief(scene) ? 1.0 : 0.0));
 }
 
 }  // namespace
 
 hal::Result<Preview> preview_of(const EyeToSimulate& board, const Scene& scene, const RenderWatch& watch) {
   const Scene coarse = coarse_scene(board, scene);
-  const std::vector<double> times = times_of(coarse);
+  const std::vector<double> times = times_to_look(coarse);
   std::vector<Levels> looks;
   Looking looking{board, watch, looks_at(coarse, board.object, times.size())};
   for (const double t_s : times) looks.push_back(TRY(levels_of(looking, coarse, {.t_s = t_s})));
@@ -232,7 +228,13 @@ hal::Result<Preview> preview_of(const EyeToSimulate& board, const Scene& scene, 
   }
   preview.rms = rms(preview.levels);
   add_neighbours(board.eye, preview);
-  TRY(add_slopes(looking, coarse, times[static_cast<std::size_t>(brightest - looks.begin())], preview));
+  // Slopes are steepest where it is bright, or where something has come before what is bright.
+  const auto most_moved = std::max_element(looks.begin(), looks.end(), [&](const Levels& a, const Levels& b) {
+    return rms_between(a, looks[0]) < rms_between(b, looks[0]);
+  });
+  for (const auto& look : brightest == most_moved ? std::vector{brightest} : std::vector{brightest, most_moved}) {
+    TRY(add_slopes(looking, coarse, times[static_cast<std::size_t>(look - looks.begin())], *look, preview));
+  }
   TRY(add_changes(looking, coarse, times, looks, preview));
   return preview;
 }

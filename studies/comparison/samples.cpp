@@ -45,9 +45,13 @@ void take_exact(double sigma, std::uint64_t seed, CompareSamples& samples) {
   samples.weights.assign(samples.y.size(), 1.0F);
 }
 
-Result<void> take_from_eye(const Board& board, const sim::Scene& scene, std::uint64_t seed, CompareSamples& samples) {
+Result<void> take_from_eye(const Board& board, const sim::Scene& scene, std::uint64_t seed,
+                           const sim::RenderWatch& watch, CompareSamples& samples) {
   hal::VirtualClock clock;
-  const auto eye = TRY(sim::SimulatedEye::create(simulated_eye_settings(board, scene, seed), clock));
+  auto settings_of_eye = simulated_eye_settings(board, scene, seed);
+  settings_of_eye.planning.watch = watch;
+  const auto eye = TRY(sim::SimulatedEye::create(std::move(settings_of_eye), clock));
+  eye->watch(watch);
   const std::atomic<bool> never{false};
   const auto settings = correction_settings(board, samples.living.sees, samples.living.measured.get());
   TrialFrame frame = TRY(take_trial_frame(board, settings, *eye, clock, never));
@@ -62,13 +66,15 @@ Result<CompareSamples> take_samples(const Board& board, const CompareOptions& o,
   const sim::Scene scene = TRY(choose_scene(board, o.scene));
   hal::Image truth = TRY(sim::scene_truth(scene, board.object));
   CompareSamples samples{scene.name, std::move(truth), TRY(response_of(board, o, progress)), {}, {}, {}};
+  const sim::RenderWatch watch = [&](std::string_view what, double share) { return progress(what, share, 1.0); };
   if (o.exact) {
     take_exact(board.noise_sigma(), o.seed, samples);
   } else {
-    TRY(take_from_eye(board, scene, o.seed, samples));
+    TRY(take_from_eye(board, scene, o.seed, watch, samples));
   }
   // A lattice without an interommatidial angle has no conventional eye; the comparison goes on without it.
-  if (auto conventional = conventional_picture(board, scene, o.seed)) samples.conventional = std::move(*conventional);
+  if (auto conventional = conventional_picture(board, scene, o.seed, watch))
+    samples.conventional = std::move(*conventional);
   return samples;
 }
 

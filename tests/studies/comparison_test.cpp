@@ -126,3 +126,17 @@ TEST_CASE("a stop keeps the rows that are done and names the missing ones; witho
   REQUIRE_FALSE(nothing.has_value());
   CHECK(nothing.error().code == hal::ErrorCode::interrupted);
 }
+
+TEST_CASE("a stop is heard while the scene is looked at and rendered") {
+  for (const std::string_view stage : {"looking at the scene", "rendering"}) {
+    CAPTURE(std::string(stage));
+    int told = 0;
+    const auto stopped = compared(quick({"admm"}, {"identity"}), [&](std::string_view what, double, double) {
+      told += what == stage ? 1 : 0;
+      return what != stage;
+    });
+    REQUIRE_FALSE(stopped.has_value());
+    CHECK(stopped.error().code == hal::ErrorCode::interrupted);
+    CHECK(told == 1);
+  }
+}

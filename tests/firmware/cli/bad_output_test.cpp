@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "tests/firmware/cli/program.hpp"
 #include "tests/firmware/cli/scratch_problem.hpp"
@@ -32,6 +33,24 @@ TEST_CASE("outputs that cannot be written are refused and leave nothing") {
   check_refused(problem, reconstruct + "--png x.png --out missing/x.npy", ErrorCode::not_found, "missing/x.npy", {});
   check_refused(problem, reconstruct + "--out y.npy", ErrorCode::usage, "--out", {"y.npy"});
   check_refused(problem, reconstruct + "--out x.txt", ErrorCode::usage, "--out", {"x.txt", ".npy"});
+}
+
+TEST_CASE("an output over what is read, or over another output by any name, is refused and nothing is lost") {
+  const ScratchProblem problem;
+  const std::filesystem::path& folder = problem.folder().path();
+  std::filesystem::copy(board_folder("sim-8x8"), folder / "board", std::filesystem::copy_options::recursive);
+  std::ofstream(folder / "s.toml") << "[[surface]]\npicture = \"star\"\n";
+  std::filesystem::create_symlink("q.npy", folder / "link.npy");
+  const std::string simulate = "simulate --board board --scene s.toml ";
+  check_refused(problem, simulate + "--out s.toml", ErrorCode::usage, "--out", {"s.toml", "--scene"});
+  check_refused(problem, simulate + "--out board/board.toml", ErrorCode::usage, "--out", {"--board"});
+  check_refused(problem, simulate + "--out ./board/../s.toml", ErrorCode::usage, "--out", {"--scene"});
+  check_refused(problem, "compare --board board --scene s.toml --sheet s.toml", ErrorCode::usage, "--sheet",
+                {"--scene"});
+  for (const std::string& same :
+       {std::string("./q.npy"), (folder / "q.npy").string(), std::string("link.npy"), std::string("board/../q.npy")}) {
+    check_refused(problem, simulate + "--out q.npy --truth " + same, ErrorCode::usage, "--truth", {"--out"});
+  }
 }
 
 TEST_CASE("a full disk is told and leaves nothing") {

@@ -301,5 +301,5 @@ TEST_CASE("reconstruct says what is missing and what does not go together about 
                 {"8x8", "64", "256", "F.eye"});
   check_refused(problem, "reconstruct --eye F.eye --distance 31" + rest, ErrorCode::mismatch, "F.eye",
                 {"31", "30", "35"});
-  check_refused(problem, "reconstruct --eye F.eye --out F.eye" + rest, ErrorCode::usage, "--out", {"F.eye", ".npy"});
+  check_refused(problem, "reconstruct --eye F.eye --out F.eye" + rest, ErrorCode::usage, "--out", {"F.eye", "--eye"});
 }
