@@ -61,9 +61,9 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};compueye;ALL;/")
 if(CMAKE_CROSSCOMPILING)
-  # Its libraries lie in the folder of tools/foreign-root, with what dpkg knows of them.
+  # dpkg-shlibdeps knows the packages of this machine's libraries; tools/package asks it of another's.
   set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${COMPUEYE_DEBIAN_PROCESSOR})
-  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_SYSROOT}/lib/${CMAKE_LIBRARY_ARCHITECTURE}
-                                                  ${CMAKE_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE})
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS OFF)
+  set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/packaging/libraries.cmake)
 endif()
 include(CPack)
