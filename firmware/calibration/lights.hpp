@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/device/device_source.hpp"
+#include "drivers/device/eye_controls.hpp"
 #include "firmware/calibration/around.hpp"
 #include "hal/clock.hpp"
 #include "hal/eye_geometry.hpp"
@@ -37,7 +37,7 @@ struct Person {
 struct LightSite {
   hal::ObjectPlane plane;
   hal::SampleSource& eye;
-  device::DeviceSource* device;  ///< the eye, where it has a device that may have lamps; else null
+  device::EyeControls* device;  ///< the eye, where it has a device that may have lamps; else null
   hal::Clock& clock;
   Person person;
 };
