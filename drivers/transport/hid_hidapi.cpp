@@ -46,7 +46,7 @@ std::string ascii_of(const wchar_t* text) {
 hal::Error refusal_of(const std::string& path) {
   if (access(path.c_str(), R_OK | W_OK) == 0) return {};
   return {hal::ErrorCode::io, path,
-          "permission denied; install boards/generic-hid/70-compueye.rules and plug the eye in again"};
+          "permission denied; install boards/60-compueye.rules and plug the eye in again"};
 }
 
 hal::Result<FoundEye> find_eye(protocol::UsbIdentity identity, const std::string& serial) {
@@ -122,7 +122,7 @@ hal::Result<void> HidTransport::open() {
   if (!connection->input || !connection->requests || !connection->file) {
     return hal::fail(
         hal::ErrorCode::io, eye.path,
-        "the device file does not open; plug the eye in again, and install boards/generic-hid/70-compueye.rules");
+        "the device file does not open; plug the eye in again, and install boards/60-compueye.rules");
   }
   description_.bus = eye.bus;
   description_.serial = eye.serial;

@@ -225,6 +225,31 @@ TEST_CASE("boards of converters say which, and how they hang on the machine") {
   }
 }
 
+TEST_CASE("boards of an eye on a machine's USB say which, and what the machine does for it") {
+  struct Case {
+    const char* name;
+    const char* kind;
+    int bits;
+  };
+  for (const Case& c : {Case{"rpi5-usb", "usb", 16}, Case{"rpi4-hid", "hid", 12}}) {
+    CAPTURE(c.name);
+    const auto board = load_board(boards / c.name);
+    REQUIRE_MESSAGE(board.has_value(), board.error().text());
+    CHECK(board->name == c.name);
+    CHECK(board->source.kind == c.kind);
+    CHECK(board->sensor.bits == c.bits);
+    CHECK(board->realtime.priority > 0);
+    REQUIRE(board->realtime.acquire_cpus.size() == 1);
+    const std::vector<int>& solve = board->realtime.solve_cpus;
+    CHECK(std::find(solve.begin(), solve.end(), board->realtime.acquire_cpus.front()) == solve.end());
+    // What a reader needs before the cable is of any use.
+    const std::string page = text_of(boards / c.name / "README.md");
+    for (const char* const word : {"| signal |", "dtparam", "60-compueye.rules", "usermod -aG compueye", "doctor"}) {
+      CHECK_MESSAGE(page.find(word) != std::string::npos, word);
+    }
+  }
+}
+
 TEST_CASE("wiring that a converter cannot work by is refused at its line") {
   const std::string good = text_of(boards / "rpi4-spi-mcp3208" / "board.toml");
   REQUIRE(parse_board(good, "b.toml").has_value());
@@ -269,8 +294,8 @@ TEST_CASE("a board that is not there is answered with those that are") {
 
   const auto far = load_board(boards / "something-else-entirely");
   REQUIRE_FALSE(far.has_value());
-  for (const char* name :
-       {"generic-hid", "generic-usb", "rpi4-spi-mcp3208", "rpi5-spi-ddc264", "sim-120x120", "sim-80x80", "sim-8x8"}) {
+  for (const char* name : {"generic-hid", "generic-usb", "rpi4-hid", "rpi4-spi-mcp3208", "rpi5-spi-ddc264", "rpi5-usb",
+                           "sim-120x120", "sim-80x80", "sim-8x8"}) {
     CHECK(compueye::test::names(far.error().sentence, name));
   }
 
