@@ -278,6 +278,39 @@ TEST_CASE("wiring that a converter cannot work by is refused at its line") {
   refused("frame_rate_hz = 200", "frame_rate_hz = 200000", "frame_rate_hz");
 }
 
+TEST_CASE("lamps are a line for each pixel of the object plane, or refused at their line") {
+  std::string small = text_of(boards / "generic-usb" / "board.toml");
+  for (const std::string key : {"rows = 16", "columns = 16"}) {
+    small.replace(small.find(key), key.size(), key == "rows = 16" ? "rows = 2" : "columns = 3");
+  }
+  const auto with = [&](const std::string& section) { return parse_board(small + "\n[lamps]\n" + section, "b.toml"); };
+  CHECK(parse_board(small, "b.toml").value().lamps.lines.empty());
+  const auto lit = with("lines = \"gpiochip0 5 6 13 19 26 LED\"\nactive_low = true\nsettle_ms = 2.5\n");
+  REQUIRE_MESSAGE(lit.has_value(), lit.error().text());
+  CHECK(lit->lamps.lines == "gpiochip0 5 6 13 19 26 LED");
+  CHECK(lit->lamps.active_low);
+  CHECK(lit->lamps.settle_ms == 2.5);
+
+  const auto refused = [&](const std::string& section, const std::string& says) {
+    const auto board = with(section);
+    CAPTURE(section);
+    REQUIRE_FALSE(board.has_value());
+    CHECK_MESSAGE(board.error().text().find(says) != std::string::npos, board.error().text());
+    CHECK(board.error().place.starts_with("b.toml:"));
+  };
+  refused("lines = \"gpiochip0 5 6 13 19 26\"\n", "are 5, expected 6");
+  refused("lines = \"gpiochip0\"\n", "expected the chip and its lines");
+  refused("active_low = true\n", "needs lines");
+  refused("settle_ms = 1e6\n", "settle_ms");
+  std::string many = "lines = \"gpiochip0";
+  for (int k = 0; k < 33; ++k) many += " " + std::to_string(k);
+  refused(many + "\"\n", "at most 32");
+  const auto simulated =
+      parse_board(text_of(boards / "sim-8x8" / "board.toml") + "\n[lamps]\nlines = \"gpiochip0 5\"\n", "b.toml");
+  REQUIRE_FALSE(simulated.has_value());
+  CHECK(simulated.error().text().find("simulated") != std::string::npos);
+}
+
 TEST_CASE("a board that is not there is answered with those that are") {
   const auto near = load_board(boards / "sim-8x9");
   REQUIRE_FALSE(near.has_value());
