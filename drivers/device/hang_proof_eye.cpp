@@ -13,10 +13,11 @@ DeviceSource& eye_of(hal::SampleSource& source) noexcept {
 
 }  // namespace
 
-hal::Result<std::unique_ptr<HangProofEye>> HangProofEye::create(std::string device, OpenEye open, SharedTime time) {
+hal::Result<std::unique_ptr<HangProofEye>> HangProofEye::create(std::string device, OpenEye open, SharedTime time,
+                                                                std::size_t frames_ahead) {
   // What the device's thread tells outlives this call, which may go away before it.
   auto told = std::make_shared<Told>();
-  std::unique_ptr<HangProofEye> eye(new HangProofEye(std::move(device), std::move(time)));
+  std::unique_ptr<HangProofEye> eye(new HangProofEye(std::move(device), std::move(time), frames_ahead));
   TRY(eye->HangProofSource::open([open = std::move(open), told](hal::Clock& clock) -> hal::Result<Source> {
     auto made = TRY(open(clock));
     *told = {made->descriptor(), made->exposure_ns()};

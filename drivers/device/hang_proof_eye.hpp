@@ -18,7 +18,8 @@ class HangProofEye final : public HangProofSource, public EyeControls {
 
   /// As HangProofSource::create().
   [[nodiscard]] static hal::Result<std::unique_ptr<HangProofEye>> create(std::string device, OpenEye open,
-                                                                         SharedTime time = SharedTime::monotonic());
+                                                                         SharedTime time = SharedTime::monotonic(),
+                                                                         std::size_t frames_ahead = usual_ahead);
 
   [[nodiscard]] const protocol::DeviceDescriptor& descriptor() const noexcept override { return descriptor_; }
   [[nodiscard]] std::int64_t exposure_ns() const noexcept override { return exposure_ns_; }

@@ -1,7 +1,6 @@
 #include "drivers/device/hang_proof_source.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <limits>
 #include <utility>
 
@@ -12,71 +11,14 @@ namespace {
 
 constexpr hal::Counter hang_counter{"hang", "calls of the driver that did not come back in their time"};
 
+constexpr std::int64_t counters_limit_ns = 200'000'000;  // of the wait for a read to come back
+
 std::string in_tenths(std::int64_t ns) {
   const std::int64_t tenths = ns / 100'000'000;
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
 }
 
 }  // namespace
-
-/// What the calls work on, and what they leave. It is the thread's while a call is being made, and the reader's
-/// otherwise.
-struct HangProofSource::Device {
-  explicit Device(std::shared_ptr<hal::Clock> by) : clock(std::move(by)) {}
-
-  [[nodiscard]] const AsideCall& call(DeviceCall which) const noexcept {
-    return calls[static_cast<std::size_t>(which)];
-  }
-
-  /// One of the rows, with what goes wrong beside errors.
-  template <class Run>
-  [[nodiscard]] AsideCall row(DeviceCall which, Run run) {
-    return {limit_of(which).name, [this, run] {
-              try {
-                run(*this);
-              } catch (const std::exception&) {
-                done = hal::fail(hal::ErrorCode::no_space, "device", "out of memory");
-                block = tl::unexpected(done.error());
-              }
-              if (!source) return;
-              account = source->account();
-              outages = source->outages();
-              withheld = source->withheld();
-            }};
-  }
-
-  const std::shared_ptr<hal::Clock> clock;  // outlives the source
-  Open open;
-  Source source;
-  // What is asked:
-  std::int64_t deadline_ns = 0;
-  Act act;
-  // What came of it:
-  hal::Result<void> done;
-  hal::Result<hal::SampleBlock> block = hal::timed_out();
-  hal::FrameAccount account;
-  std::uint64_t outages = 0;
-  bool withheld = false;
-
-  const std::array<AsideCall, hang_limits.size()> calls{
-      row(DeviceCall::open,
-          [](Device& d) {
-            auto opened = d.open(*d.clock);
-            d.done = opened ? hal::Result<void>() : tl::unexpected(std::move(opened.error()));
-            if (opened) d.source = std::move(*opened);
-          }),
-      // One that somebody went on without may have started it, or not have stopped it.
-      row(DeviceCall::start,
-          [](Device& d) {
-            d.source->stop();
-            d.done = d.source->start();
-          }),
-      row(DeviceCall::read, [](Device& d) { d.block = d.source->read(d.deadline_ns); }),
-      row(DeviceCall::set, [](Device& d) { d.done = std::exchange(d.act, nullptr)(*d.source); }),
-      row(DeviceCall::stop, [](Device& d) { d.source->stop(); }),
-      row(DeviceCall::close, [](Device& d) { d.source.reset(); }),
-  };
-};
 
 std::string hang_reference() {
   std::string text = "| call | waited for | then |\n|---|---|---|\n";
@@ -87,13 +29,15 @@ std::string hang_reference() {
   return text;
 }
 
-hal::Result<std::unique_ptr<HangProofSource>> HangProofSource::create(std::string device, Open open, SharedTime time) {
-  std::unique_ptr<HangProofSource> source(new HangProofSource(std::move(device), std::move(time)));
+hal::Result<std::unique_ptr<HangProofSource>> HangProofSource::create(std::string device, Open open, SharedTime time,
+                                                                      std::size_t frames_ahead) {
+  std::unique_ptr<HangProofSource> source(new HangProofSource(std::move(device), std::move(time), frames_ahead));
   TRY(source->open(std::move(open)));
   return source;
 }
 
-HangProofSource::HangProofSource(std::string device, SharedTime time) : time_(std::move(time)) {
+HangProofSource::HangProofSource(std::string device, SharedTime time, std::size_t frames_ahead)
+    : time_(std::move(time)), frames_ahead_(frames_ahead) {
   description_.serial = std::move(device);
 }
 
@@ -102,7 +46,7 @@ HangProofSource::~HangProofSource() {
 }
 
 hal::Result<void> HangProofSource::open(Open open) {
-  device_ = std::make_shared<Device>(time_.clock);
+  device_ = std::make_shared<CalledDevice>(time_.clock);
   device_->open = std::move(open);
   thread_ = TRY(OwnThread::begin(device_, time_));
   if (!made(DeviceCall::open, now_ns() + limit_of(DeviceCall::open).budget_ns)) return tl::unexpected(hangs());
@@ -110,33 +54,44 @@ hal::Result<void> HangProofSource::open(Open open) {
   source_ = device_->source.get();
   description_ = source_->describe();
   counters_ = source_->counters();
-  see();
+  FrameRing& ring = device_->ring.emplace(frames_ahead_ + 1, static_cast<std::size_t>(description_.channels));
+  has_frame_ = [&ring] { return ring.has_frame(); };
+  see(device_->books);
   return {};
 }
 
 /// Makes a call. False: it, or the one before, is not back by `until_ns`.
 bool HangProofSource::made(DeviceCall call, std::int64_t until_ns) noexcept {
+  device_->wanted.store(true, std::memory_order_relaxed);
   if (!thread_->idle_by(until_ns)) return false;
   thread_->ask(device_->call(call), until_ns);
   return thread_->idle_by(until_ns);
 }
 
-/// What a call has left that came back.
-void HangProofSource::see() noexcept {
-  account_ = device_->account;
-  outages_ = device_->outages;
-  withheld_ = device_->withheld;
+/// Of a frame or a call that came back.
+void HangProofSource::see(const SourceBooks& books) noexcept {
+  books_ = books;
   hanging_.store(false, std::memory_order_relaxed);
   hang_.reset();
 }
 
+/// Of the call that is being made; reading is many of them.
+OwnThread::Pending HangProofSource::pending() const noexcept {
+  OwnThread::Pending pending = thread_->pending();
+  if (device_ && pending.call == limit_of(DeviceCall::read).name) {
+    pending.since_ns = device_->read_since_ns.load(std::memory_order_relaxed);
+    pending.due_ns = device_->read_due_ns.load(std::memory_order_relaxed);
+  }
+  return pending;
+}
+
 hal::Error HangProofSource::hangs() {
-  const OwnThread::Pending pending = thread_->pending();
+  const OwnThread::Pending at = pending();
   if (!hang_) hangs_.fetch_add(1, std::memory_order_relaxed);
   hanging_.store(true, std::memory_order_relaxed);
   hang_ = hal::Error{hal::ErrorCode::timeout, description_.serial,
-                     "its driver has not come back from '" + std::string(pending.call) + "' for " +
-                         in_tenths(now_ns() - pending.since_ns) +
+                     "its driver has not come back from '" + std::string(at.call) + "' for " +
+                         in_tenths(now_ns() - at.since_ns) +
                          "; unplug the eye and plug it in again, or restart the machine"};
   return *hang_;
 }
@@ -144,14 +99,15 @@ hal::Error HangProofSource::hangs() {
 hal::Result<void> HangProofSource::do_start() {
   given_up_ = reading_ = false;
   reader_ = {};
+  delivered_ = 0;
   hangs_.store(0, std::memory_order_relaxed);
   hanging_.store(false, std::memory_order_relaxed);
   hang_.reset();
-  account_ = {};
-  outages_ = 0;
+  books_ = {};
   if (!device_) return hal::fail(hal::ErrorCode::usage, description_.serial, "is closed");
   if (!made(DeviceCall::start, now_ns() + limit_of(DeviceCall::start).budget_ns)) return tl::unexpected(hangs());
-  see();
+  device_->ring->clear();
+  see(device_->books);
   counters_ = source_->counters();
   return std::move(device_->done);
 }
@@ -162,28 +118,42 @@ hal::Result<hal::SampleBlock> HangProofSource::do_read(std::int64_t deadline_ns)
   }
   const std::int64_t until_ns =
       std::min(deadline_ns, std::numeric_limits<std::int64_t>::max() - latest_answer_ns) + latest_answer_ns;
+  device_->deadline_ns.store(deadline_ns, std::memory_order_relaxed);
   for (bool asked = false;;) {
-    if (!thread_->idle_by(until_ns)) return late();
-    if (reading_) {
-      reading_ = false;
-      see();
-      auto block = std::exchange(device_->block, hal::timed_out());
-      // That nothing came by an earlier deadline is no answer to this one.
-      if (block || asked || block.error().code != hal::ErrorCode::timeout) return block;
+    const bool idle = thread_->idle_by(std::numeric_limits<std::int64_t>::min());
+    if (const RingFrame* const frame = device_->ring->pop()) {
+      ++delivered_;
+      see(frame->books);
+      return frame->block;
     }
+    if (!idle) {
+      if (!thread_->idle_or(has_frame_, until_ns)) return late();
+      continue;
+    }
+    if (auto error = end_of_reading(asked)) return tl::unexpected(std::move(*error));
     if (const auto caller = std::this_thread::get_id(); caller != reader_) {
       reader_ = caller;
       thread_->run_as_caller();
     }
-    device_->deadline_ns = deadline_ns;
+    device_->wanted.store(false, std::memory_order_relaxed);
     thread_->ask(device_->call(DeviceCall::read), deadline_ns);
     reading_ = asked = true;
   }
 }
 
+/// The error that reading has come to; nothing: it may go on. `asked`: by the read() that wants to know.
+std::optional<hal::Error> HangProofSource::end_of_reading(bool asked) {
+  if (!std::exchange(reading_, false)) return std::nullopt;
+  see(device_->books);
+  auto ended = std::exchange(device_->ended, {});
+  // That nothing came by an earlier deadline is no answer to this one.
+  if (ended || (!asked && ended.error().code == hal::ErrorCode::timeout)) return std::nullopt;
+  return std::move(ended.error());
+}
+
 /// The answer while nothing else is known.
 hal::Result<hal::SampleBlock> HangProofSource::late() {
-  const std::int64_t over_ns = now_ns() - thread_->pending().due_ns;
+  const std::int64_t over_ns = now_ns() - pending().due_ns;
   if (over_ns < limit_of(DeviceCall::read).budget_ns) return hal::timed_out();
   hal::Error error = hangs();
   if (over_ns < hang_given_up_after_ns) return hal::timed_out();
@@ -194,24 +164,22 @@ hal::Result<hal::SampleBlock> HangProofSource::late() {
 }
 
 void HangProofSource::do_stop() noexcept {
-  const std::int64_t until_ns = now_ns() + limit_of(DeviceCall::stop).budget_ns;
-  const bool idle = thread_->idle_by(until_ns);
-  const bool unread = idle && std::exchange(reading_, false) && device_->block;
-  if (!idle || !made(DeviceCall::stop, until_ns)) {
+  reading_ = false;
+  if (!made(DeviceCall::stop, now_ns() + limit_of(DeviceCall::stop).budget_ns)) {
     static_cast<void>(hangs());
     return;
   }
-  see();
-  if (unread) {
-    --account_.delivered;
-    ++account_.drops(hal::DropReason::stopped);
-  }
+  see(device_->books);
+  const std::uint64_t unread = books_.account.delivered - delivered_;
+  books_.account.delivered -= unread;
+  books_.account.drops(hal::DropReason::stopped) += unread;
   counters_ = source_->counters();
 }
 
 hal::Result<void> HangProofSource::act(Act act) {
   const std::int64_t until_ns = now_ns() + limit_of(DeviceCall::set).budget_ns;
   if (!device_) return hal::fail(hal::ErrorCode::usage, description_.serial, "is closed");
+  device_->wanted.store(true, std::memory_order_relaxed);
   if (!thread_->idle_by(until_ns)) return tl::unexpected(hangs());
   device_->act = std::move(act);
   if (!made(DeviceCall::set, until_ns)) return tl::unexpected(hangs());
@@ -235,7 +203,8 @@ std::uint64_t HangProofSource::do_faults() const noexcept {
 }
 
 std::vector<hal::Counter> HangProofSource::do_counters() const {
-  const bool idle = device_ && thread_->idle_by(now_ns());
+  if (device_) device_->wanted.store(true, std::memory_order_relaxed);
+  const bool idle = device_ && thread_->idle_by(now_ns() + counters_limit_ns);
   std::vector<hal::Counter> counters = idle ? source_->counters() : counters_;
   counters.push_back(hang_counter);
   counters.back().count = hangs_.load(std::memory_order_relaxed);

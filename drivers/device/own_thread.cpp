@@ -43,7 +43,7 @@ SharedTime SharedTime::monotonic() {
           }};
 }
 
-struct OwnThread::Core {
+struct OwnThread::Core final : AsideBell {
   explicit Core(SharedTime by) : time(std::move(by)) {}
 
   const SharedTime time;
@@ -57,6 +57,11 @@ struct OwnThread::Core {
   bool left = false, gone = false;
   std::shared_ptr<void> belongings;
 
+  void ring() noexcept override {
+    // Whoever is about to wait has looked before, or will after this.
+    { const std::lock_guard lock(mutex); }
+    answered.notify_all();
+  }
   /// Waits until `done`, and `until_ns` at most; returns whether it is.
   template <class Done>
   [[nodiscard]] bool wait(std::unique_lock<std::mutex>& lock, std::int64_t until_ns, Done done) {
@@ -92,7 +97,7 @@ void OwnThread::work(const std::shared_ptr<Core>& core) noexcept {
     const bool other = std::exchange(c.other_scheduling, false);
     lock.unlock();
     if (other) take_on(c.scheduling);
-    c.call->run();
+    c.call->run(c);
     lock.lock();
     c.call = nullptr;
     c.answered.notify_all();
@@ -119,6 +124,11 @@ void OwnThread::ask(const AsideCall& call, std::int64_t due_ns) noexcept {
 bool OwnThread::idle_by(std::int64_t until_ns) noexcept {
   std::unique_lock lock(core_->mutex);
   return core_->wait(lock, until_ns, [this] { return core_->call == nullptr; });
+}
+
+bool OwnThread::idle_or(const std::function<bool()>& done, std::int64_t until_ns) noexcept {
+  std::unique_lock lock(core_->mutex);
+  return core_->wait(lock, until_ns, [&] { return core_->call == nullptr || done(); });
 }
 
 OwnThread::Pending OwnThread::pending() const noexcept {

@@ -10,10 +10,20 @@
 
 namespace compueye::device {
 
+/// Wakes whoever waits for a call that has come half of its way.
+class AsideBell {
+ public:
+  AsideBell() = default;
+  AsideBell(const AsideBell&) = delete;
+  AsideBell& operator=(const AsideBell&) = delete;
+  virtual ~AsideBell() = default;
+  virtual void ring() noexcept = 0;
+};
+
 /// Something to be done on another thread.
 struct AsideCall {
-  std::string_view name;      ///< a literal
-  std::function<void()> run;  ///< does not throw
+  std::string_view name;                     ///< a literal
+  std::function<void(AsideBell& bell)> run;  ///< does not throw
 };
 
 /// A thread that makes calls, one after the other, for somebody who does not wait for them longer than he wants to.
@@ -41,6 +51,8 @@ class OwnThread {
   void ask(const AsideCall& call, std::int64_t due_ns) noexcept;
   /// Waits until it is idle, and `until_ns` at most. True: what the last call did can be looked at.
   [[nodiscard]] bool idle_by(std::int64_t until_ns) noexcept;
+  /// Likewise, and not once `done()`, which is asked when the bell was rung. False: neither.
+  [[nodiscard]] bool idle_or(const std::function<bool()>& done, std::int64_t until_ns) noexcept;
   /// Of the call that is being made; only while idle_by() says that there is one, or leave() that there was.
   [[nodiscard]] Pending pending() const noexcept;
   /// The thread runs with the scheduling and on the processors of the caller from its next call on.

@@ -29,14 +29,14 @@ using test::second;
 constexpr int one = 1;
 
 struct Rig {
-  [[nodiscard]] hal::Result<std::unique_ptr<HangProofSource>> make() {
+  [[nodiscard]] hal::Result<std::unique_ptr<HangProofSource>> make(std::size_t ahead = 0) {
     return HangProofSource::create(
         "the eye",
         [gate = gate](hal::Clock& by) -> hal::Result<HangProofSource::Source> {
           gate->pass("open");
           return std::make_unique<HangingSource>(by, gate);
         },
-        time_of(clock, gate));
+        time_of(clock, gate), ahead);
   }
   [[nodiscard]] std::int64_t now_ns() const { return clock->now_ns(); }
   /// A read of 100 ms, which takes no longer.
@@ -70,13 +70,52 @@ TEST_CASE("hang: a source behind a thread of its own keeps the contract of sourc
       return made;
     };
     const std::shared_ptr<hal::Clock> lent(std::shared_ptr<void>(), &clock);
-    return std::move(HangProofSource::create("the eye", open, time_of(lent, gate)).value());
+    return std::move(HangProofSource::create("the eye", open, time_of(lent, gate), 0).value());
   };
   test.heap_calls = [] { return compueye::tests::heap_use_of_this_thread().calls(); };
   test.lose_frames = [=](hal::SampleSource&, int frames) { at->load()->lose_frames(frames); };
   test.lose_channel = [=](hal::SampleSource&, int channel) { at->load()->lose_channel(channel); };
   test.disconnect = [=](hal::SampleSource&) { at->load()->disconnect(); };
   hal::tests::check_sample_source_contract(test);
+}
+
+TEST_CASE("hang: and one that reads ahead does, but that its frames may come before their reader's time") {
+  hal::tests::SourceUnderTest test;
+  const auto gate = std::make_shared<HangGate>();
+  test.make = [=](hal::Clock& clock) -> std::unique_ptr<hal::SampleSource> {
+    const auto open = [gate](hal::Clock& by) -> hal::Result<HangProofSource::Source> {
+      return std::make_unique<HangingSource>(by, gate);
+    };
+    const std::shared_ptr<hal::Clock> lent(std::shared_ptr<void>(), &clock);
+    return std::move(HangProofSource::create("the eye", open, time_of(lent, gate)).value());
+  };
+  // Time that the device's thread moves on.
+  test.make_clock = [] { return std::make_unique<hal::VirtualClock>(); };
+  test.paced = false;
+  test.heap_calls = [] { return compueye::tests::heap_use_of_this_thread().calls(); };
+  hal::tests::check_sample_source_contract(test);
+}
+
+TEST_CASE("hang: a reader who comes late finds the frames that were read ahead, and no more of them") {
+  constexpr std::size_t ahead = 4;
+  Rig rig;
+  const auto source = rig.make(ahead).value();
+  REQUIRE(source->start());
+  REQUIRE(rig.read(*source));
+  // In its hand is one; so many more fit, and then the device is not read any more.
+  rig.gate->wait_for("answer", 1 + ahead);
+  for (std::uint64_t k = 1; k <= ahead; ++k) {
+    const auto block = rig.read(*source);
+    REQUIRE(block);
+    CHECK(block->frame == k);
+    CHECK(block->codes[1] == static_cast<std::int32_t>(3 * k + 1));
+    CHECK(source->account().delivered == k + 1);
+  }
+  source->stop();
+  const hal::FrameAccount account = source->account();
+  CHECK(account.delivered == 1 + ahead);
+  CHECK(account.drops(hal::DropReason::stopped) == account.total_dropped());
+  CHECK(account.balanced());
 }
 
 TEST_CASE("hang: a device that cannot be opened is given up in its time, and closed when it is there after all") {
@@ -261,7 +300,7 @@ TEST_CASE("hang: the device's thread runs where its reader runs") {
       HangProofSource::create(
           "the eye",
           [seen](hal::Clock& by) -> hal::Result<HangProofSource::Source> { return std::make_unique<Where>(by, seen); },
-          time_of(rig.clock, rig.gate))
+          time_of(rig.clock, rig.gate), 0)
           .value();
   REQUIRE(source->start());
   cpu_set_t only;

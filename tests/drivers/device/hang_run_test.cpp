@@ -21,12 +21,11 @@ namespace {
 using firmware::Ending;
 using firmware::Stage;
 using hal::tests::ReferenceSource;
-using test::ms;
 using test::second;
 
 /// A run of a source that hangs in its call number `nth`, and comes back at `until_ns` of the clock.
 struct HangingRun {
-  explicit HangingRun(std::int64_t until_ns) {
+  HangingRun(std::int64_t until_ns, std::size_t ahead) {
     SharedTime time = time_of(clock, gate);
     time.wait = [inner = time.wait, gate = gate, clock = clock, until_ns](auto& lock, auto& told, std::int64_t by_ns) {
       inner(lock, told, by_ns);
@@ -37,7 +36,7 @@ struct HangingRun {
                  [gate = gate](hal::Clock& by) -> hal::Result<HangProofSource::Source> {
                    return std::make_unique<HangingSource>(by, gate);
                  },
-                 time)
+                 time, ahead)
                  .value();
     settings.pacing = firmware::Pacing::every_frame;
     settings.beats = &beats;
@@ -64,48 +63,54 @@ struct HangingRun {
 };
 
 TEST_CASE("hang: a run goes on behind a driver that hung for six seconds, and its reader was never stuck") {
-  HangingRun rig(7 * second);
-  rig.gate->hang_at("read", 20);
-  const firmware::RunSummary summary = rig.run(100);
-  CHECK(summary.ending == Ending::frames_delivered);
-  CHECK(summary.frames.delivered == 100);
-  CHECK(summary.frames.balanced());
-  CHECK(summary.frames.drops(hal::DropReason::device_overrun) > 5000);
-  CHECK(summary.recovering_ns > 5 * second);
-  CHECK(rig.longest_read_ns() >= rig.settings.read_timeout_ns);
-  CHECK(rig.longest_read_ns() <= rig.settings.read_timeout_ns + latest_answer_ns);
-  CHECK(summary.source_counters.back().name == "hang");
-  CHECK(summary.source_counters.back().count == 1);
+  for (const std::size_t ahead : aheads) {
+    HangingRun rig(7 * second, ahead);
+    rig.gate->hang_at("read", 20);
+    const firmware::RunSummary summary = rig.run(100);
+    CHECK(summary.ending == Ending::frames_delivered);
+    CHECK(summary.frames.delivered == 100);
+    CHECK(summary.frames.balanced());
+    CHECK(summary.frames.drops(hal::DropReason::device_overrun) > 5000);
+    CHECK(summary.recovering_ns > 5 * second);
+    CHECK(rig.longest_read_ns() >= rig.settings.read_timeout_ns);
+    CHECK(rig.longest_read_ns() <= rig.settings.read_timeout_ns + latest_answer_ns);
+    CHECK(summary.source_counters.back().name == "hang");
+    CHECK(summary.source_counters.back().count == 1);
+  }
 }
 
 TEST_CASE("hang: a run whose driver hangs for good ends in its time, and says which call it is") {
-  HangingRun rig(std::numeric_limits<std::int64_t>::max());
-  rig.gate->hang_at("read", 20);
-  const firmware::RunSummary summary = rig.run(100);
-  CHECK(summary.ending == Ending::source_failed);
-  REQUIRE(summary.error);
-  CHECK(summary.error->code == hal::ErrorCode::disconnected);
-  CHECK(summary.error->sentence.find("'read'") != std::string::npos);
-  CHECK(summary.frames.delivered == 19);
-  CHECK(summary.frames.balanced());
-  CHECK(rig.longest_read_ns() <= rig.settings.read_timeout_ns + latest_answer_ns);
-  CHECK(rig.clock->now_ns() <= 2 * second + hang_given_up_after_ns + limit_of(DeviceCall::stop).budget_ns);
-  CHECK(rig.source->hang());
-  rig.source.reset();
-  rig.gate->release();
-  rig.gate->wait_for("closed", 1);
+  for (const std::size_t ahead : aheads) {
+    HangingRun rig(std::numeric_limits<std::int64_t>::max(), ahead);
+    rig.gate->hang_at("read", 20);
+    const firmware::RunSummary summary = rig.run(100);
+    CHECK(summary.ending == Ending::source_failed);
+    REQUIRE(summary.error);
+    CHECK(summary.error->code == hal::ErrorCode::disconnected);
+    CHECK(summary.error->sentence.find("'read'") != std::string::npos);
+    CHECK(summary.frames.delivered == 19);
+    CHECK(summary.frames.balanced());
+    CHECK(rig.longest_read_ns() <= rig.settings.read_timeout_ns + latest_answer_ns);
+    CHECK(rig.clock->now_ns() <= 2 * second + hang_given_up_after_ns + limit_of(DeviceCall::stop).budget_ns);
+    CHECK(rig.source->hang());
+    rig.source.reset();
+    rig.gate->release();
+    rig.gate->wait_for("closed", 1);
+  }
 }
 
 TEST_CASE("hang: a stop request ends a run whose driver hangs") {
-  HangingRun rig(std::numeric_limits<std::int64_t>::max());
-  rig.gate->hang_at("read", 20);
-  rig.sink.on_write = [&](const hal::Frame&) { rig.stop = true; };
-  const firmware::RunSummary summary = rig.run(0);
-  CHECK(summary.ending == Ending::stop_requested);
-  CHECK(summary.frames.balanced());
-  rig.source.reset();
-  rig.gate->release();
-  rig.gate->wait_for("closed", 1);
+  for (const std::size_t ahead : aheads) {
+    HangingRun rig(std::numeric_limits<std::int64_t>::max(), ahead);
+    rig.gate->hang_at("read", 20);
+    rig.sink.on_write = [&](const hal::Frame&) { rig.stop = true; };
+    const firmware::RunSummary summary = rig.run(0);
+    CHECK(summary.ending == Ending::stop_requested);
+    CHECK(summary.frames.balanced());
+    rig.source.reset();
+    rig.gate->release();
+    rig.gate->wait_for("closed", 1);
+  }
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "tests/drivers/device/converter_rig.hpp"
 #include "tests/drivers/device/eye_rig.hpp"
 #include "tests/drivers/device/hang_gate.hpp"
+#include "tests/drivers/device/hanging_source.hpp"
 #include "tests/drivers/device/hanging_wires.hpp"
 #include "tests/hal/sample_source_contract.hpp"
 #include "tests/memory/allocation_counter.hpp"
@@ -74,8 +75,8 @@ struct Converters {
       return std::move(*made);
     };
   }
-  [[nodiscard]] hal::Result<std::unique_ptr<HangProofSource>> make() const {
-    return HangProofSource::create("converters", open(), time_of(clock, gate));
+  [[nodiscard]] hal::Result<std::unique_ptr<HangProofSource>> make(std::size_t ahead = 0) const {
+    return HangProofSource::create("converters", open(), time_of(clock, gate), ahead);
   }
 
   struct NoSync final : hal::OutputLines {
@@ -101,7 +102,7 @@ struct Cable {
                                              clock->now_ns())
                 .value())) {}
 
-  [[nodiscard]] hal::Result<std::unique_ptr<HangProofEye>> make() const {
+  [[nodiscard]] hal::Result<std::unique_ptr<HangProofEye>> make(std::size_t ahead = 0) const {
     return HangProofEye::create(
         "cable",
         [bus = bus, eye = eye, gate = gate](hal::Clock& by) {
@@ -109,7 +110,7 @@ struct Cable {
               source_settings(bus),
               std::make_unique<HangingTransport>(std::make_unique<protocol::EmulatedTransport>(*eye, by), gate), by);
         },
-        time_of(clock, gate));
+        time_of(clock, gate), ahead);
   }
 
   const Bus* bus;
@@ -120,16 +121,17 @@ struct Cable {
 
 /// Plays one hang of `call`, the n-th one after the run began: what a reader must be able to rely on all the same.
 /// Returns whether it was ever made.
-bool hold_up(hal::SampleSource& source, hal::VirtualClock& clock, HangGate& gate, const std::string& call, int nth) {
+bool hold_up(HangProofSource& source, hal::VirtualClock& clock, HangGate& gate, const std::string& call, int nth) {
   CAPTURE(call);
   CAPTURE(nth);
   REQUIRE(source.start());
   std::uint64_t next = 0, delivered = 0;
   const auto read = [&] {
+    const bool hung = gate.hangs();
     const std::int64_t deadline_ns = clock.now_ns() + 100 * ms;
     const auto block = source.read(deadline_ns);
-    // Where nothing hangs, recovery takes what the chips take; time that nobody waited for is none of the reader's.
-    if (gate.hangs()) REQUIRE(clock.now_ns() <= deadline_ns + latest_answer_ns);
+    // Where nothing hangs, recovery takes what the chips take, and time goes as far as that.
+    if (hung) REQUIRE(clock.now_ns() <= deadline_ns + latest_answer_ns);
     const hal::FrameAccount account = source.account();
     REQUIRE(account.balanced());
     if (!block) {
@@ -147,6 +149,10 @@ bool hold_up(hal::SampleSource& source, hal::VirtualClock& clock, HangGate& gate
   gate.hang_at(call, nth);
   for (const std::int64_t until_ns = clock.now_ns() + 600 * ms; clock.now_ns() < until_ns && !gate.hangs();) read();
   const bool came = gate.hangs();
+  // What was read ahead is the reader's, whatever hangs behind it.
+  std::size_t before = 0;
+  while (came && read()) ++before;
+  CHECK(before <= HangProofSource::usual_ahead);
   for (int k = 0; came && k < 30; ++k) CHECK_FALSE(read());
   if (came) CHECK(source.recovering());
   gate.release();
@@ -162,6 +168,40 @@ bool hold_up(hal::SampleSource& source, hal::VirtualClock& clock, HangGate& gate
 
 }  // namespace
 
+TEST_CASE("hang: frames that are read ahead are the same, bit for bit, and none is lost on the way") {
+  static constexpr std::size_t frames = 150;
+  const auto first_of = [](hal::SampleSource& source, hal::Clock& clock) {
+    std::vector<Kept> all;
+    REQUIRE(source.start());
+    while (all.size() < frames) {
+      const auto block = source.read(clock.now_ns() + 35 * ms);
+      if (block) all.push_back(kept(*block));
+      REQUIRE(source.account().delivered == all.size());
+      REQUIRE(source.account().balanced());
+    }
+    source.stop();
+    const hal::FrameAccount account = source.account();
+    CHECK(account.balanced());
+    CHECK(account.delivered == frames);
+    CHECK(account.total_dropped() == account.drops(hal::DropReason::stopped));
+    CHECK(account.total_dropped() <= HangProofSource::usual_ahead + 2);
+    return all;
+  };
+  for (const ConverterEye& eye : converter_eyes) {
+    CAPTURE(eye.chip);
+    const Converters alone(eye), aside(eye);
+    const auto bare = alone.bare(*alone.clock).value();
+    const auto proof = aside.make(HangProofSource::usual_ahead).value();
+    CHECK(first_of(*proof, *aside.clock) == first_of(*bare, *alone.clock));
+  }
+  for (const Bus* const bus : protocol::buses) {
+    CAPTURE(std::string(bus->name));
+    const Cable one(bus), other(bus);
+    const auto without = one.make(0).value(), with = other.make(HangProofSource::usual_ahead).value();
+    CHECK(first_of(*with, *other.clock) == first_of(*without, *one.clock));
+  }
+}
+
 TEST_CASE("hang: converters behind a thread of their own keep the contract of sources") {
   for (const ConverterEye& eye : converter_eyes) {
     CAPTURE(eye.chip);
@@ -176,7 +216,7 @@ TEST_CASE("hang: converters behind a thread of their own keep the contract of so
         return std::move(ConverterSource::create(settings, wires_of(*on, by), by).value());
       };
       const std::shared_ptr<hal::Clock> lent(std::shared_ptr<void>(), &clock);
-      return std::move(HangProofSource::create("converters", open, time_of(lent, gate)).value());
+      return std::move(HangProofSource::create("converters", open, time_of(lent, gate), 0).value());
     };
     test.heap_calls = [] { return compueye::tests::heap_use_of_this_thread().calls(); };
     test.disconnect = [=](hal::SampleSource&) { (*chips)->inject({.kind = frontend::FrontEndFaultKind::gone}); };
@@ -243,12 +283,14 @@ TEST_CASE("hang: no call of an SPI bus or a line that hangs holds read or stop, 
     int came = 0;
     for (const std::string& call : calls) {
       for (const int nth : {1, 2, 7}) {
-        const Converters on(eye);
-        const auto source = on.make().value();
-        came += hold_up(*source, *on.clock, *on.gate, call, nth) ? 1 : 0;
+        for (const std::size_t ahead : aheads) {
+          const Converters on(eye);
+          const auto source = on.make(ahead).value();
+          came += hold_up(*source, *on.clock, *on.gate, call, nth) ? 1 : 0;
+        }
       }
     }
-    CHECK(came >= 6);
+    CHECK(came >= 12);
   }
 }
 
@@ -264,12 +306,15 @@ TEST_CASE("hang: nor one that recovery makes") {
     for (const auto& call : calls) {
       CAPTURE(eye.chip);
       CAPTURE(call.first);
-      const Converters on(eye);
-      const auto source = on.make().value();
-      on.chips->inject(
-          {.kind = frontend::FrontEndFaultKind::gone, .at_ns = on.clock->now_ns() + 300 * ms, .duration_ns = 100 * ms});
-      const bool came = hold_up(*source, *on.clock, *on.gate, call.first, 1);
-      CHECK(came == call.second);
+      for (const std::size_t ahead : aheads) {
+        const Converters on(eye);
+        const auto source = on.make(ahead).value();
+        on.chips->inject({.kind = frontend::FrontEndFaultKind::gone,
+                          .at_ns = on.clock->now_ns() + 300 * ms,
+                          .duration_ns = 100 * ms});
+        const bool came = hold_up(*source, *on.clock, *on.gate, call.first, 1);
+        CHECK(came == call.second);
+      }
     }
   }
 }
@@ -279,11 +324,13 @@ TEST_CASE("hang: no call of a cable that hangs holds read or stop, and frames co
     CAPTURE(std::string(bus->name));
     for (const char* const call : {"cable read", "cable control", "cable open", "cable close"}) {
       for (const int nth : {1, 2, 5}) {
-        const Cable on(bus);
-        const auto source = on.make().value();
-        on.eye->inject({.kind = FaultKind::unplug, .at_ns = on.clock->now_ns() + 300 * ms, .duration_ns = 50 * ms});
-        const bool came = hold_up(*source, *on.clock, *on.gate, call, nth);
-        CHECK((came || nth > 1));
+        for (const std::size_t ahead : aheads) {
+          const Cable on(bus);
+          const auto source = on.make(ahead).value();
+          on.eye->inject({.kind = FaultKind::unplug, .at_ns = on.clock->now_ns() + 300 * ms, .duration_ns = 50 * ms});
+          const bool came = hold_up(*source, *on.clock, *on.gate, call, nth);
+          CHECK((came || nth > 1));
+        }
       }
     }
   }

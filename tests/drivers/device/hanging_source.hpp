@@ -1,13 +1,18 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <utility>
 
+#include "drivers/device/hang_proof_source.hpp"
 #include "tests/drivers/device/hang_gate.hpp"
 #include "tests/hal/reference_source.hpp"
 
 namespace compueye::device::tests {
+
+/// How many frames a source may read ahead: all that concerns it holds for none and for some.
+inline constexpr std::size_t aheads[] = {0, HangProofSource::usual_ahead};
 
 /// A source each of whose calls passes by a gate, "answer" being what read() has got before it comes back.
 class HangingSource final : public hal::tests::ReferenceSource {
