@@ -67,15 +67,17 @@ hal::Result<BoardEye> as_measured(const Board& board) {
 }
 
 /// What an eye says of itself.
-hal::Result<hal::SourceDescription> ask(const transport::Cable& cable, const transport::FoundEye& eye,
-                                        hal::Clock& clock) {
+hal::Result<hal::SourceDescription> ask(const transport::Cable& cable, const transport::FoundEye& eye) {
   if (!eye.reachable()) return tl::unexpected(eye.refusal);
   device::DeviceSettings settings;
   settings.bus = &cable.bus;
   settings.serial = eye.serial;
   settings.frame_rate_hz = 1.0;
   settings.start_limit_ns = 1'000'000'000;
-  return TRY(device::DeviceSource::create(std::move(settings), cable.connect(eye.serial), clock))->describe();
+  const auto open = [&cable, settings](hal::Clock& clock) {
+    return device::DeviceSource::create(settings, cable.connect(settings.serial), clock);
+  };
+  return TRY(device::HangProofEye::create(eye.serial, open))->describe();
 }
 
 }  // namespace
@@ -121,7 +123,7 @@ std::unique_ptr<hal::ByteTransport> connect(const protocol::Bus& bus, const std:
   return cable_on(bus).connect(serial);
 }
 
-AttachedEyes list_attached_eyes(hal::Clock& clock) {
+AttachedEyes list_attached_eyes() {
   AttachedEyes found;
   for (const transport::Cable* cable : cables) {
     const auto eyes = cable->list();
@@ -130,7 +132,7 @@ AttachedEyes list_attached_eyes(hal::Clock& clock) {
       continue;
     }
     for (const transport::FoundEye& eye : *eyes) {
-      found.eyes.push_back({std::string(cable->bus.name), eye.bus, eye.serial, eye.product, ask(*cable, eye, clock)});
+      found.eyes.push_back({std::string(cable->bus.name), eye.bus, eye.serial, eye.product, ask(*cable, eye)});
     }
   }
   return found;

@@ -78,8 +78,8 @@ struct AttachedEyes {
   std::vector<std::string> notes;  ///< a bus that could not be looked at, a sentence each
 };
 
-/// Looks for eyes on every bus and asks each what it is, for a second at most. An eye that another program runs is
-/// listed with the reason why it could not be asked.
-[[nodiscard]] AttachedEyes list_attached_eyes(hal::Clock& clock);
+/// Looks for eyes on every bus and asks each what it is, for a second at most, and ten where its driver hangs. An eye
+/// that another program runs is listed with the reason why it could not be asked.
+[[nodiscard]] AttachedEyes list_attached_eyes();
 
 }  // namespace compueye::firmware
