@@ -23,7 +23,7 @@ inline constexpr std::array<HangLimit, 6> hang_limits{{
     {DeviceCall::open, "open", 10'000'000'000, "there is no eye: the command ends, and says so"},
     {DeviceCall::start, "start", 5'000'000'000, "no run begins, and an error says so"},
     {DeviceCall::read, "read", 500'000'000, "`read()` has timed out, and the source is recovering"},
-    {DeviceCall::set, "set", 2'000'000'000, "exposure or lamp are not set, and an error says so"},
+    {DeviceCall::set, "set", 2'000'000'000, "exposure, lamp or GPIO lamps are not set, and an error says so"},
     {DeviceCall::stop, "stop", 2'000'000'000, "the run ends without it, and says so"},
     {DeviceCall::close, "close", 1'000'000'000, "the program goes on, or ends, without it"},
 }};

@@ -7,7 +7,7 @@
 
 namespace compueye::firmware {
 
-/// The lines of a board's lamps, not opened; null: it has none.
+/// The lines of a board's lamps, not opened, whose driver can hold nobody up; null: it has none.
 [[nodiscard]] std::unique_ptr<hal::OutputLines> lamp_lines(const LampSettings& lamps);
 
 }  // namespace compueye::firmware
