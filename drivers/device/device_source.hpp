@@ -13,6 +13,7 @@
 #include "drivers/device/device_machine.hpp"
 #include "drivers/device/device_requests.hpp"
 #include "drivers/device/device_settings.hpp"
+#include "drivers/device/eye_controls.hpp"
 #include "drivers/device/failure_counters.hpp"
 #include "drivers/device/stream_extent.hpp"
 #include "drivers/device/stream_reader.hpp"
@@ -45,7 +46,7 @@ namespace compueye::device {
 ///
 /// After start() read() neither allocates nor throws while frames come. Recovery allocates: errors with text, the
 /// descriptor of a device that was plugged in again (1 MiB at most).
-class DeviceSource final : public hal::SampleSource {
+class DeviceSource final : public hal::SampleSource, public EyeControls {
  public:
   /// Opens the eye and identifies it, for DeviceSettings::start_limit_ns at most. `clock` must outlive the source.
   /// Errors: usage (no transport), out_of_range (a setting), not_found (no eye, or another serial), unsupported
@@ -58,17 +59,14 @@ class DeviceSource final : public hal::SampleSource {
   DeviceSource& operator=(const DeviceSource&) = delete;
   ~DeviceSource() override;
 
-  /// For the runs from the next start() on; 0: as long as device and rate allow. Errors: usage (it is started),
-  /// out_of_range.
-  [[nodiscard]] hal::Result<void> set_exposure(std::int64_t exposure_ns);
-  /// SET_ILLUM, now; a device that starts anew forgets it. For the thread that reads. Errors: disconnected (or it is
-  /// being got back: read() does that), timeout, io (refused).
-  [[nodiscard]] hal::Result<void> set_illumination(const protocol::Illumination& wanted);
+  [[nodiscard]] hal::Result<void> set_exposure(std::int64_t exposure_ns) override;
+  [[nodiscard]] hal::Result<void> set_illumination(const protocol::Illumination& wanted) override;
+  [[nodiscard]] std::int64_t exposure_ns() const noexcept override { return configuration_.exposure_ns; }
 
   /// counters(), by what they are.
   [[nodiscard]] FailureCounters failures() const noexcept;
   [[nodiscard]] MachineState state() const noexcept { return machine_.state(); }
-  [[nodiscard]] const protocol::DeviceDescriptor& descriptor() const noexcept { return *descriptor_; }
+  [[nodiscard]] const protocol::DeviceDescriptor& descriptor() const noexcept override { return *descriptor_; }
   [[nodiscard]] const protocol::Configuration& configuration() const noexcept { return configuration_; }
   [[nodiscard]] const DeviceSettings& settings() const noexcept { return settings_; }
 

@@ -45,8 +45,7 @@ std::string ascii_of(const wchar_t* text) {
 
 hal::Error refusal_of(const std::string& path) {
   if (access(path.c_str(), R_OK | W_OK) == 0) return {};
-  return {hal::ErrorCode::io, path,
-          "permission denied; install boards/generic-hid/70-compueye.rules and plug the eye in again"};
+  return {hal::ErrorCode::io, path, "permission denied; install boards/60-compueye.rules and plug the eye in again"};
 }
 
 hal::Result<FoundEye> find_eye(protocol::UsbIdentity identity, const std::string& serial) {
@@ -120,9 +119,8 @@ hal::Result<void> HidTransport::open() {
   connection->requests.reset(hid_open_path(eye.path.c_str()));
   connection->file = identity_of(eye.path);
   if (!connection->input || !connection->requests || !connection->file) {
-    return hal::fail(
-        hal::ErrorCode::io, eye.path,
-        "the device file does not open; plug the eye in again, and install boards/generic-hid/70-compueye.rules");
+    return hal::fail(hal::ErrorCode::io, eye.path,
+                     "the device file does not open; plug the eye in again, and install boards/60-compueye.rules");
   }
   description_.bus = eye.bus;
   description_.serial = eye.serial;

@@ -13,8 +13,7 @@ hal::Error usb_error(int code, std::string place, std::string_view doing) {
   };
   switch (code) {
     case LIBUSB_ERROR_ACCESS:
-      return error(hal::ErrorCode::io,
-                   "permission denied; install boards/generic-usb/70-compueye.rules and plug the eye in again");
+      return error(hal::ErrorCode::io, "permission denied; install boards/60-compueye.rules and plug the eye in again");
     case LIBUSB_ERROR_BUSY:
       return error(hal::ErrorCode::io, "another program has the eye; close it");
     case LIBUSB_ERROR_NO_DEVICE:

@@ -25,7 +25,8 @@ struct AttachedBench {
 
   /// The same with an eye that is there.
   [[nodiscard]] static hal::Result<AttachedBench> create(BoardEye eye, const hal::ObjectPlane& plane,
-                                                         const LightWanted& wanted, hal::Clock& clock, Person person);
+                                                         const LightWanted& wanted, hal::Clock& clock, Person person,
+                                                         LineLamps lamps = {});
 };
 
 }  // namespace compueye::firmware

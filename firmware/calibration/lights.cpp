@@ -8,7 +8,9 @@
 
 #include "drivers/illuminator/device_light.hpp"
 #include "drivers/illuminator/display_light.hpp"
+#include "drivers/illuminator/line_light.hpp"
 #include "drivers/illuminator/manual_light.hpp"
+#include "firmware/eye/lamp_lines.hpp"
 #include "firmware/files/png.hpp"
 #include "hal/try.hpp"
 
@@ -66,6 +68,16 @@ Light device(const LightWanted&, const LightSite& site) {
       [site](const protocol::Illumination& each) { return set_lamp(site, each); }, site.clock));
 }
 
+Light gpio(const LightWanted&, const LightSite& site) {
+  auto lines = site.lamps.lines ? site.lamps.lines() : nullptr;
+  if (!lines) {
+    return hal::fail(ErrorCode::unsupported, "--light",
+                     "is 'gpio', and the board has no [lamps]: say there which lines they hang on");
+  }
+  return TRY(illuminator::LineLight::create({site.plane.rows, site.plane.cols, site.lamps.settle_ns}, std::move(lines),
+                                            site.clock));
+}
+
 Light manual(const LightWanted& wanted, const LightSite& site) {
   constexpr std::int64_t wait_ns = 20'000'000;
   illuminator::ManualSettings settings;
@@ -86,11 +98,18 @@ constexpr std::array kinds{
               true, true, false, display},
     LightKind{"device", "lamps of the eye's own device, one for each pixel of the object plane", Around::scene, true,
               false, false, device},
+    LightKind{"gpio",
+              "lamps on GPIO lines of this machine, one for each pixel of the object plane: [lamps] of the board",
+              Around::scene, true, false, false, gpio},
     LightKind{"manual", "you: the pattern is written to --picture, and Enter says that it is before the eye",
               Around::scene, false, false, true, manual},
 };
 
 }  // namespace
+
+LineLamps lamps_of(const Board& board) {
+  return {[lamps = board.lamps] { return lamp_lines(lamps); }, static_cast<std::int64_t>(board.lamps.settle_ms * 1e6)};
+}
 
 std::span<const LightKind> light_kinds() noexcept {
   return kinds;

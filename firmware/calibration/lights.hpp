@@ -9,12 +9,15 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/device/device_source.hpp"
+#include "drivers/device/eye_controls.hpp"
 #include "firmware/calibration/around.hpp"
+#include "firmware/eye/board.hpp"
 #include "hal/clock.hpp"
 #include "hal/eye_geometry.hpp"
 #include "hal/illuminator.hpp"
 #include "hal/result.hpp"
+#include "hal/sample_source.hpp"
+#include "hal/signal_lines.hpp"
 
 namespace compueye::firmware {
 
@@ -33,13 +36,21 @@ struct Person {
   int terminal = 0;                            ///< file descriptor
 };
 
+/// Lamps on lines of this machine.
+struct LineLamps {
+  std::function<std::unique_ptr<hal::OutputLines>()> lines = {};  ///< empty, or gives null: there are none
+  std::int64_t settle_ns = 0;                                     ///< from a level to stable light
+};
+[[nodiscard]] LineLamps lamps_of(const Board& board);
+
 /// What a light is made for, and what it may use. All of it outlives the light.
 struct LightSite {
   hal::ObjectPlane plane;
   hal::SampleSource& eye;
-  device::DeviceSource* device;  ///< the eye, where it has a device that may have lamps; else null
+  device::EyeControls* device;  ///< the eye, where it has a device that may have lamps; else null
   hal::Clock& clock;
   Person person;
+  LineLamps lamps = {};
 };
 
 /// What puts patterns before an eye: a row each.

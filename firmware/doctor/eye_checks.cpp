@@ -23,7 +23,7 @@ hal::Result<std::unique_ptr<hal::SampleSource>> eye_of(const Examined& e) {
   if (e.board.source.simulated()) {
     return hal::fail(hal::ErrorCode::unsupported, e.board.name, "is simulated, so there is no link to look at");
   }
-  return TRY(real_eye(e.board, e.clock)).source;
+  return TRY(real_eye(e.board)).source;
 }
 
 Finding failed(const hal::Error& error) {

@@ -25,11 +25,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Device files of a board's wires, each once.
-std::vector<std::string> files_of(const WiringSettings& wiring) {
-  std::vector<std::string> files{wiring.data};
-  if (!wiring.settings.empty()) files.push_back(wiring.settings);
-  for (const std::string* text : {&wiring.data_ready, &wiring.select, &wiring.reset, &wiring.sync}) {
+/// Device files of a board's wires and lamps, each once.
+std::vector<std::string> files_of(const Board& board) {
+  const WiringSettings& wiring = board.wiring;
+  std::vector<std::string> files;
+  for (const std::string* bus : {&wiring.data, &wiring.settings}) {
+    if (!bus->empty()) files.push_back(*bus);
+  }
+  for (const std::string* text :
+       {&wiring.data_ready, &wiring.select, &wiring.reset, &wiring.sync, &board.lamps.lines}) {
     if (const auto names = line_names(*text)) {
       files.push_back(names->chip.starts_with('/') ? names->chip : "/dev/" + names->chip);
     }
@@ -55,8 +59,9 @@ std::string text_of(const fs::path& path) {
 }  // namespace
 
 Finding examine_device_files(const Examined& e) {
-  if (!e.board.source.wired()) return {Health::none, "the board's eye is not wired to this machine"};
-  for (const std::string& file : files_of(e.board.wiring)) {
+  const std::vector<std::string> files = files_of(e.board);
+  if (files.empty()) return {Health::none, "the board's eye is not wired to this machine"};
+  for (const std::string& file : files) {
     const std::string path = e.root + file;
     if (::access(path.c_str(), R_OK | W_OK) == 0) continue;
     const int why = errno;
@@ -71,7 +76,7 @@ Finding examine_device_files(const Examined& e) {
             group.empty() ? "let a group open it, by a udev rule such as boards/60-compueye.rules, and join that group"
                           : fmt::format("sudo usermod -aG {} $USER, and log in again", group)};
   }
-  return {Health::good, fmt::format("{} can be opened", fmt::join(files_of(e.board.wiring), ", "))};
+  return {Health::good, fmt::format("{} can be opened", fmt::join(files, ", "))};
 }
 
 Finding examine_udev_rule(const Examined& e) {

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "firmware/eye/board_lamps.hpp"
 #include "firmware/eye/board_wiring.hpp"
 #include "firmware/eye/source_kinds.hpp"
 #include "firmware/files/cache_folder.hpp"
@@ -224,6 +225,7 @@ hal::Result<void> check_board(const Board& board) {
   TRY(check_sensor(board));
   TRY(check_as_built(board));
   TRY(check_wiring(board));
+  TRY(check_lamps(board));
   return check_reconstruction(board);
 }
 

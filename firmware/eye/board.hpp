@@ -41,6 +41,13 @@ struct WiringSettings {
   std::vector<int> ommatidia;  ///< of channels, M of them; empty: channel c is ommatidium c
 };
 
+/// LEDs on GPIO lines of this machine, which calibration lights; "CHIP LINE ...", one for each pixel of the object.
+struct LampSettings {
+  std::string lines;        ///< row 0 first; empty: none
+  bool active_low = false;  ///< lit while the line is low
+  double settle_ms = 0.0;   ///< from a line's level to stable light
+};
+
 struct SceneSettings {
   std::string name;          ///< a built-in scene, or a PNG: absolute or relative to the board's folder
   int frames_per_scene = 0;  ///< >= 1
@@ -60,6 +67,7 @@ struct Board {
   hal::BuildSettings build;
   SourceSettings source;
   WiringSettings wiring;
+  LampSettings lamps;
   recon::Objective objective;    ///< but for its lambda, which choose_lambda() finds
   recon::Plan plan;              ///< but for what depends on the response
   std::optional<double> lambda;  ///< by hand, >= 0; absent: by rule from the noise

@@ -15,8 +15,9 @@
 #include "sim/scene/scene.hpp"
 
 namespace compueye::device {
-class DeviceSource;
-}
+class EyeControls;
+class HangProofSource;
+}  // namespace compueye::device
 namespace compueye::sim {
 class SimulatedEye;
 }
@@ -33,16 +34,17 @@ struct EyeWanted {
   std::optional<sim::Scene> display = {};    ///< that a simulated eye's scene can be covered with
 };
 
-/// The eye of a board, and which of the two it is: some lights are the eye's own.
+/// The eye of a board, and which kind it is: some lights are the eye's own.
 struct BoardEye {
   std::unique_ptr<hal::SampleSource> source;
-  sim::SimulatedEye* simulated = nullptr;    ///< the source, or null
-  device::DeviceSource* attached = nullptr;  ///< likewise
+  sim::SimulatedEye* simulated = nullptr;         ///< the source, or null
+  device::EyeControls* attached = nullptr;        ///< likewise: an eye on a cable
+  device::HangProofSource* hang_proof = nullptr;  ///< likewise: one whose driver may hang
 };
 
 /// The eye of a board: simulated, or on a cable and identified: the board's serial, or the first one there is where the
-/// board names none, exposed as it was measured. `clock` must outlive it. Errors: those of planned_eye() and
-/// DeviceSource::create(); mismatch (an eye of another number of channels or depth than the board says), usage
+/// board names none, exposed as it was measured. `clock` is a simulated eye's and must outlive it. Errors: those of
+/// planned_eye() and real_eye(); mismatch (an eye of another number of channels or depth than the board says), usage
 /// (--lossless on a cable).
 [[nodiscard]] hal::Result<BoardEye> board_eye(const Board& board, EyeWanted wanted, hal::Clock& clock);
 
@@ -50,13 +52,10 @@ struct BoardEye {
 [[nodiscard]] hal::Result<std::unique_ptr<hal::SampleSource>> board_source(const Board& board, EyeWanted wanted,
                                                                            hal::Clock& clock);
 
-/// The eye on a cable of a board whose source is none that is simulated, exposed for as long as its rate allows,
-/// however it was measured. `clock` must outlive it. Errors: as above.
-[[nodiscard]] hal::Result<std::unique_ptr<device::DeviceSource>> attached_eye(const Board& board, hal::Clock& clock);
-
-/// The eye of a board that is not simulated, exposed as attached_eye()'s. Errors: those of attached_eye() and
-/// wired_eye().
-[[nodiscard]] hal::Result<BoardEye> real_eye(const Board& board, hal::Clock& clock);
+/// The eye of a board that is not simulated, exposed for as long as its rate allows, however it was measured: on the
+/// kernel's monotonic clock, and with a driver that can hold nobody up. Errors: those of DeviceSource::create(),
+/// wired_eye() and device::HangProofSource::create(); mismatch as above.
+[[nodiscard]] hal::Result<BoardEye> real_eye(const Board& board);
 
 /// Whether a source is of as many channels and as deep as the board's eye. Error mismatch at `place`.
 [[nodiscard]] hal::Result<void> check_fits(const hal::SourceDescription& source, const Board& board,
@@ -79,8 +78,8 @@ struct AttachedEyes {
   std::vector<std::string> notes;  ///< a bus that could not be looked at, a sentence each
 };
 
-/// Looks for eyes on every bus and asks each what it is, for a second at most. An eye that another program runs is
-/// listed with the reason why it could not be asked.
-[[nodiscard]] AttachedEyes list_attached_eyes(hal::Clock& clock);
+/// Looks for eyes on every bus and asks each what it is, for a second at most, and ten where its driver hangs. An eye
+/// that another program runs is listed with the reason why it could not be asked.
+[[nodiscard]] AttachedEyes list_attached_eyes();
 
 }  // namespace compueye::firmware

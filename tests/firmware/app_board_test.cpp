@@ -225,6 +225,31 @@ TEST_CASE("boards of converters say which, and how they hang on the machine") {
   }
 }
 
+TEST_CASE("boards of an eye on a machine's USB say which, and what the machine does for it") {
+  struct Case {
+    const char* name;
+    const char* kind;
+    int bits;
+  };
+  for (const Case& c : {Case{"rpi5-usb", "usb", 16}, Case{"rpi4-hid", "hid", 12}}) {
+    CAPTURE(c.name);
+    const auto board = load_board(boards / c.name);
+    REQUIRE_MESSAGE(board.has_value(), board.error().text());
+    CHECK(board->name == c.name);
+    CHECK(board->source.kind == c.kind);
+    CHECK(board->sensor.bits == c.bits);
+    CHECK(board->realtime.priority > 0);
+    REQUIRE(board->realtime.acquire_cpus.size() == 1);
+    const std::vector<int>& solve = board->realtime.solve_cpus;
+    CHECK(std::find(solve.begin(), solve.end(), board->realtime.acquire_cpus.front()) == solve.end());
+    // What a reader needs before the cable is of any use.
+    const std::string page = text_of(boards / c.name / "README.md");
+    for (const char* const word : {"| signal |", "dtparam", "60-compueye.rules", "usermod -aG compueye", "doctor"}) {
+      CHECK_MESSAGE(page.find(word) != std::string::npos, word);
+    }
+  }
+}
+
 TEST_CASE("wiring that a converter cannot work by is refused at its line") {
   const std::string good = text_of(boards / "rpi4-spi-mcp3208" / "board.toml");
   REQUIRE(parse_board(good, "b.toml").has_value());
@@ -253,6 +278,39 @@ TEST_CASE("wiring that a converter cannot work by is refused at its line") {
   refused("frame_rate_hz = 200", "frame_rate_hz = 200000", "frame_rate_hz");
 }
 
+TEST_CASE("lamps are a line for each pixel of the object plane, or refused at their line") {
+  std::string small = text_of(boards / "generic-usb" / "board.toml");
+  for (const std::string key : {"rows = 16", "columns = 16"}) {
+    small.replace(small.find(key), key.size(), key == "rows = 16" ? "rows = 2" : "columns = 3");
+  }
+  const auto with = [&](const std::string& section) { return parse_board(small + "\n[lamps]\n" + section, "b.toml"); };
+  CHECK(parse_board(small, "b.toml").value().lamps.lines.empty());
+  const auto lit = with("lines = \"gpiochip0 5 6 13 19 26 LED\"\nactive_low = true\nsettle_ms = 2.5\n");
+  REQUIRE_MESSAGE(lit.has_value(), lit.error().text());
+  CHECK(lit->lamps.lines == "gpiochip0 5 6 13 19 26 LED");
+  CHECK(lit->lamps.active_low);
+  CHECK(lit->lamps.settle_ms == 2.5);
+
+  const auto refused = [&](const std::string& section, const std::string& says) {
+    const auto board = with(section);
+    CAPTURE(section);
+    REQUIRE_FALSE(board.has_value());
+    CHECK_MESSAGE(board.error().text().find(says) != std::string::npos, board.error().text());
+    CHECK(board.error().place.starts_with("b.toml:"));
+  };
+  refused("lines = \"gpiochip0 5 6 13 19 26\"\n", "are 5, expected 6");
+  refused("lines = \"gpiochip0\"\n", "expected the chip and its lines");
+  refused("active_low = true\n", "needs lines");
+  refused("settle_ms = 1e6\n", "settle_ms");
+  std::string many = "lines = \"gpiochip0";
+  for (int k = 0; k < 33; ++k) many += " " + std::to_string(k);
+  refused(many + "\"\n", "at most 32");
+  const auto simulated =
+      parse_board(text_of(boards / "sim-8x8" / "board.toml") + "\n[lamps]\nlines = \"gpiochip0 5\"\n", "b.toml");
+  REQUIRE_FALSE(simulated.has_value());
+  CHECK(simulated.error().text().find("simulated") != std::string::npos);
+}
+
 TEST_CASE("a board that is not there is answered with those that are") {
   const auto near = load_board(boards / "sim-8x9");
   REQUIRE_FALSE(near.has_value());
@@ -269,8 +327,8 @@ TEST_CASE("a board that is not there is answered with those that are") {
 
   const auto far = load_board(boards / "something-else-entirely");
   REQUIRE_FALSE(far.has_value());
-  for (const char* name :
-       {"generic-hid", "generic-usb", "rpi4-spi-mcp3208", "rpi5-spi-ddc264", "sim-120x120", "sim-80x80", "sim-8x8"}) {
+  for (const char* name : {"generic-hid", "generic-usb", "rpi4-hid", "rpi4-spi-mcp3208", "rpi5-spi-ddc264", "rpi5-usb",
+                           "sim-120x120", "sim-80x80", "sim-8x8"}) {
     CHECK(compueye::test::names(far.error().sentence, name));
   }
 

@@ -241,3 +241,44 @@ TEST_CASE("a light that an eye cannot see is refused, and every light is in the 
   INFO("docs/calibration.md should hold:\n" << light_reference());
   CHECK(guide.find(light_reference()) != std::string::npos);
 }
+
+TEST_CASE("lamps on lines of the machine are before an eye whose board has them, and said to be missing otherwise") {
+  struct Lines final : hal::OutputLines {
+    explicit Lines(std::vector<std::uint32_t>& levels) : levels_(levels) {}
+    [[nodiscard]] const std::string& name() const noexcept override { return name_; }
+    [[nodiscard]] int count() const noexcept override { return 6; }
+    [[nodiscard]] hal::Result<void> open() override { return {}; }
+    void close() noexcept override {}
+    [[nodiscard]] hal::Result<void> set(std::uint32_t levels) override {
+      levels_.push_back(levels);
+      return {};
+    }
+    std::vector<std::uint32_t>& levels_;
+    std::string name_ = "gpiochip0 lines 5, 6, 13, 19, 26 and 27";
+  };
+  Lab lab(protocol::usb_bus, 0.5);
+  lab.light.kind = "gpio";
+  hal::ObjectPlane plane = lab.eye.board.object;
+  plane.rows = 2;
+  plane.cols = 3;
+  std::vector<std::uint32_t> levels;
+  const auto bench = [&](LineLamps lamps) {
+    return AttachedBench::create({lab.cable.source()}, plane, lab.light, lab.clock, lab.person, std::move(lamps));
+  };
+  {
+    const auto made = bench({[&] { return std::make_unique<Lines>(levels); }, 2'000'000});
+    REQUIRE_MESSAGE(made.has_value(), made.error().text());
+    const auto stable_ns = made->light->show(std::vector<float>{1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F});
+    REQUIRE(stable_ns);
+    CHECK(*stable_ns == lab.clock.now_ns() + 2'000'000);
+    CHECK(levels.back() == 0b010001);
+  }
+  CHECK(levels.back() == 0);
+  plane.cols = 4;
+  CHECK(bench({[&] { return std::make_unique<Lines>(levels); }}).error().code == hal::ErrorCode::unsupported);
+  compueye::test::check_error(bench({}), hal::ErrorCode::unsupported, "--light", {"gpio"});
+  // As the board says it: the lines are there, and this machine has no such chip.
+  lab.eye.board.lamps.lines = "gpiochip77 5 6 13 19 26 27";
+  plane.cols = 3;
+  CHECK(bench(lamps_of(lab.eye.board)).error().code == hal::ErrorCode::not_found);
+}

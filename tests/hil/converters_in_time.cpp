@@ -44,8 +44,9 @@ void ConvertersInTime::Bus::transfer(std::span<const hal::SpiSegment> segments) 
   if (!settings && of.before_exchange) of.before_exchange();
   const std::lock_guard lock(of.mutex_);
   const std::int64_t now_ns = of.clock_.now_ns();
-  static_cast<void>(settings ? of.front_end_.exchange_settings(segments, now_ns)
-                             : of.front_end_.exchange(segments, now_ns));
+  const auto ended =
+      settings ? of.front_end_.exchange_settings(segments, now_ns) : of.front_end_.exchange(segments, now_ns);
+  outcome_ = ended == frontend::EmulatedFrontEnd::Outcome::failed ? EIO : 0;
 }
 
 /// ESHUTDOWN while the files are gone, as the kernel has it for those that are open.

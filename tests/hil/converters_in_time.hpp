@@ -36,8 +36,12 @@ class ConvertersInTime {
     Bus(ConvertersInTime& converters, bool of_settings) : of(converters), settings(of_settings) {}
     void transfer(std::span<const hal::SpiSegment> segments) override;
     [[nodiscard]] int status() override;
+    [[nodiscard]] int outcome() override { return outcome_; }
     ConvertersInTime& of;
     bool settings;
+
+   private:
+    int outcome_ = 0;
   };
   void pass_edges();
 

@@ -76,6 +76,7 @@ EmulatedSpidev::Answer EmulatedSpidev::message(std::size_t bytes_of_transfers, c
   }
   if (const int error = device_.status(); error != 0) return {-1, error};
   device_.transfer(segments);
+  if (const int error = device_.outcome(); error != 0) return {-1, error};
   ++counters_.messages;
   counters_.bytes += total;
   counters_.most_bytes = std::max(counters_.most_bytes, total);

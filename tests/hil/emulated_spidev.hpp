@@ -22,6 +22,8 @@ class SpiDeviceModel {
   virtual void transfer(std::span<const hal::SpiSegment> segments) = 0;
   /// The error number that the controller ends the next message with, before it moves anything; 0: none.
   [[nodiscard]] virtual int status() { return 0; }
+  /// The same of the message that was just moved.
+  [[nodiscard]] virtual int outcome() { return 0; }
 };
 
 /// The kernel's side of a /dev/spidevB.C, as drivers/spi/spidev.c has it.

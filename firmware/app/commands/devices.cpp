@@ -130,7 +130,7 @@ std::string folder_of(const DevicesRequest& request) {
 hal::Result<void> list_devices(const DevicesRequest& request, Session& session) {
   const std::string boards = folder_of(request);
   const auto listed = TRY(list_boards(boards));
-  const AttachedEyes attached = list_attached_eyes(session.clock());
+  const AttachedEyes attached = list_attached_eyes();
   return session.print(devices_report(attached, boards, listed));
 }
 

@@ -29,13 +29,13 @@ std::function<Light(bool quiet)> light_of(const RunOptions& options, const Board
       return std::make_unique<sim::SimulatedDisplay>(*at, session.clock());
     };
   }
-  return [&options, &kind, &session, plane = board.object, at = eye.source.get(),
-          device = eye.attached](bool quiet) -> Light {
+  return [&options, &kind, &session, plane = board.object, at = eye.source.get(), device = eye.attached,
+          lamps = lamps_of(board)](bool quiet) -> Light {
     const Person person{[&session, quiet](std::string_view sentence) {
                           if (!quiet) session.note(sentence);
                         },
                         [&session] { return !session.stop_requested(); }};
-    return kind.make(options.light, {plane, *at, device, session.clock(), person});
+    return kind.make(options.light, {plane, *at, device, session.clock(), person, lamps});
   };
 }
 

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "drivers/device/hang_proof_source.hpp"
 #include "drivers/recording/recording_file.hpp"
 #include "firmware/calibration/simulated_bench.hpp"
 #include "firmware/eye/settings/board_lines.hpp"
@@ -147,6 +148,9 @@ std::string RunSource::name() const {
 
 std::vector<std::string> RunSource::notes() const {
   std::vector<std::string> notes;
+  if (eye_.hang_proof != nullptr && eye_.hang_proof->hang()) {
+    notes.push_back("the eye was left as it was: " + eye_.hang_proof->hang()->text());
+  }
   if (replay_ != nullptr) {
     const recording::RecordingDamage& damage = replay_->recording().damage();
     const std::string& file = replay_->recording().place();

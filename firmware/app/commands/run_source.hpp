@@ -92,7 +92,8 @@ class RunSource {
   }
 
   // After the run:
-  /// What there is to say about the recording that was read or written, a sentence each.
+  /// What there is to say about the recording that was read or written, and of an eye that could not be stopped, a
+  /// sentence each.
   [[nodiscard]] std::vector<std::string> notes() const;
   /// The first thing that went wrong with the recording that was written.
   [[nodiscard]] hal::Result<void> recorded() const;

@@ -17,7 +17,7 @@ namespace {
 
 using hal::ErrorCode;
 
-constexpr std::array<Section, 11> all_sections{{
+constexpr std::array<Section, 12> all_sections{{
     {"board", "What this board is called."},
     {"eye", "The eye: where each ommatidium sits, where it looks and how wide it sees."},
     {"object", "The plane the eye looks at, and the picture that is reconstructed on it."},
@@ -25,6 +25,8 @@ constexpr std::array<Section, 11> all_sections{{
     {"build", "How far a simulated eye is from its drawing; left out, not at all."},
     {"source", "Where the samples come from."},
     {"wiring", "How the converters of an eye of kind \"spi\" hang on this machine; of no other kind."},
+    {"lamps",
+     "LEDs on GPIO lines of this machine, which calibrate lights with `--light gpio`; left out, there are none."},
     {"reconstruction", "How a frame is solved."},
     {"scene", "What a simulated eye sees when the command line names nothing else."},
     {"health", "When a run says that its picture is old, or that it needs a restart."},

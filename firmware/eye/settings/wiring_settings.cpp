@@ -54,6 +54,15 @@ std::vector<Setting> wiring_settings() {
                },
                [](const Board& board) { return value_of(board.wiring.ommatidia); })
            .otherwise(V{std::vector<std::int64_t>()})});
+  add(all, "lamps",
+      {field<&Board::lamps, &LampSettings::lines>(
+           "lines", "a line for each pixel of [object], row 0 first, at most 32, \"gpiochip0 5 6 13 19\"")
+           .otherwise(""),
+       field<&Board::lamps, &LampSettings::active_low>("active_low", "a lamp is lit while its line is low")
+           .otherwise(V{false}),
+       field<&Board::lamps, &LampSettings::settle_ms>("settle_ms", "from a line's level to stable light")
+           .within({0, 10e3})
+           .otherwise(1)});
   return all;
 }
 

@@ -137,7 +137,7 @@ TEST_CASE("program: devices lists what is attached, with what the eyes say of th
   wait_for_boot(usb);
   wait_for_boot(hid);
   hal::MonotonicClock clock;
-  const firmware::AttachedEyes attached = firmware::list_attached_eyes(clock);
+  const firmware::AttachedEyes attached = firmware::list_attached_eyes();
   CHECK(attached.notes.empty());
   const firmware::Figures report = firmware::devices_report(attached, "boards", {});
   const Json json = Json::parse(firmware::json_text(report));

@@ -201,7 +201,7 @@ TEST_CASE("an eye that may not be opened is listed with its serial, and the refu
   settings.serial = eye.cable.serial();
   transport::UsbTransport refused(settings);
   test::check_error(refused.open(), hal::ErrorCode::io, eyes->at(0).bus,
-                    {eyes->at(0).path, "boards/generic-usb/70-compueye.rules"});
+                    {eyes->at(0).path, "boards/60-compueye.rules"});
   settings.serial = "OTHER";
   transport::UsbTransport absent(settings);
   CHECK(absent.open().error().code == hal::ErrorCode::not_found);
