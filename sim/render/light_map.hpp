@@ -86,9 +86,9 @@ class BallMap {
     return weight_(d, turned * radius_ / h);
   }
   [[nodiscard]] double radius(const Cell& cell) const noexcept {
-    const double here = height(cell.x * cell.x + cell.y * cell.y), flat = half_diagonal(cell);
+    const double here = height(cell.x * cell.x + cell.y * cell.y), across = half_diagonal(cell);
     const double rise = std::max(height(nearest2(cell)) - here, here - height(farthest2(cell)));
-    return std::sqrt(flat * flat + rise * rise);
+    return std::sqrt(across * across + rise * rise);
   }
   /// The root in the height has its singularity at the rim, in the picture's plane.
   [[nodiscard]] double unevenness(const Cell& cell, const hal::Vec3& d) const noexcept {
