@@ -9,6 +9,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include "firmware/app/files_behind.hpp"
 #include "firmware/eye/scene/scene_choice.hpp"
 #include "firmware/eye/settings/setting.hpp"
 #include "firmware/files/output_target.hpp"
@@ -87,15 +88,15 @@ std::string where(const std::string& name, bool stream) {
   return stream || error ? fs::path(name).lexically_normal().string() : whole.string();
 }
 
-/// The option whose value names this file, or the folder of a board whose file it is; empty if there is none.
+/// The option for which this file is read; empty if there is none.
 std::string reader_of(const std::string& output, const std::deque<Option>& rows) {
   for (const Option& row : rows) {
     const auto* target = std::get_if<Target>(&row.target);
     const auto* text = target != nullptr ? std::get_if<std::string*>(target) : nullptr;
     if (text == nullptr || row.writes != Writes::nothing || (*text)->empty()) continue;
     std::error_code ignored;
-    for (const fs::path& read : {fs::path(**text), fs::path(**text) / "board.toml"}) {
-      if (fs::is_regular_file(read, ignored) && fs::equivalent(read, output, ignored)) return row.name;
+    for (const fs::path& read : files_behind(**text)) {
+      if (fs::equivalent(read, output, ignored)) return row.name;
     }
   }
   return "";

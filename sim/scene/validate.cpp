@@ -183,17 +183,17 @@ Result<void> validate(const Scene& scene) {
 
 Result<void> validate_travel(const Scene& scene, double object_distance_mm) {
   for (const Surface& surface : scene.surfaces) {
-    const Travel travel = travel_of(surface, object_distance_mm, scene.seconds_to_judge());
+    const Travel travel = travel_of(surface, object_distance_mm, scene.seconds_to_judge(), farthest_mm);
     const auto at = [](double t_s) { return " at t = " + std::to_string(t_s) + " s"; };
-    if (!(travel.farthest_mm <= farthest_mm)) {
+    if (travel.too_far_at_s) {
       return fail(ErrorCode::out_of_range, surface.name,
-                  "moves beyond " + std::to_string(farthest_mm) + " mm" + at(travel.farthest_at_s) +
+                  "moves beyond " + std::to_string(farthest_mm) + " mm" + at(*travel.too_far_at_s) +
                       "; slow it down, or give the scene a duration_s after which it begins anew");
     }
-    if (travel.nearest_mm > 0.0) continue;
+    if (!travel.inside_at_s) continue;
     return fail(ErrorCode::out_of_range, surface.name,
-                "reaches into the eye, to z = " + std::to_string(travel.nearest_mm) + " mm from the lens tip" +
-                    at(travel.nearest_at_s) + ", expected more than 0 mm all along its way");
+                "reaches into the eye" + at(*travel.inside_at_s) + ", and to z = " + std::to_string(travel.nearest_mm) +
+                    " mm from the lens tip on its way, expected more than 0 mm all along");
   }
   return {};
 }

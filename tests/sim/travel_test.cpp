@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -67,20 +69,36 @@ TEST_CASE("how near a surface comes is what looking at it all the time finds") {
       s.motion.path = {{0.0, {}}, {0.7, {any(random), 0.0, 4.0 * any(random)}}, {1.3, {0.0, 2.0, 3.0 * any(random)}}};
       s.motion.repeats = round % 3 == 1;
     }
-    const double seconds = 11.3;
-    const sim::Travel travel = sim::travel_of(s, 5.0, seconds);
+    const double seconds = 11.3, limit = 31.0;
+    const sim::Travel travel = sim::travel_of(s, 5.0, seconds, limit);
     sim::Pose rest = s.pose;
     rest.centre_mm.z = 30.0;
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0.0;
+    std::optional<double> too_far_at_s;
     constexpr int looks = 40'000;
     for (int k = 0; k <= looks; ++k) {
       const sim::Pose pose = s.motion.moved(rest, seconds * k / looks);
       nearest = std::min(nearest, nearest_corner(s, pose));
       farthest = std::max({farthest, std::fabs(pose.centre_mm.x), std::fabs(pose.centre_mm.y), pose.centre_mm.z});
+      if (farthest > limit && !too_far_at_s) too_far_at_s = seconds * k / looks;
     }
     // A look every degree misses 4 mm (1 - cos 0.5 deg) and what is travelled meanwhile.
     CHECK(travel.nearest_mm == doctest::Approx(nearest).epsilon(0.03 / nearest));
     CHECK(travel.farthest_mm == doctest::Approx(farthest).epsilon(0.01 / farthest));
+    CHECK_FALSE(travel.inside_at_s.has_value());
+    REQUIRE(travel.too_far_at_s.has_value() == too_far_at_s.has_value());
+    if (too_far_at_s) CHECK(std::fabs(*travel.too_far_at_s - *too_far_at_s) < 1e-3);
+
+    // As far away that half of its way towards the eye ends at the lens.
+    const double begin = nearest_corner(s, s.motion.moved(rest, 0.0)), half = std::midpoint(begin, nearest);
+    if (begin - half < 0.1) continue;
+    s.distance_mm = 30.0 - half;
+    const std::optional<double> inside_at_s = sim::travel_of(s, 5.0, seconds, 1e6).inside_at_s;
+    REQUIRE(inside_at_s.has_value());
+    for (int k = 0; seconds * k / looks < *inside_at_s; ++k) {
+      CHECK(nearest_corner(s, s.motion.moved(rest, seconds * k / looks)) - half > -0.03);
+    }
+    CHECK(nearest_corner(s, s.motion.moved(rest, *inside_at_s)) - half <= 1e-6);  // a path that begins anew jumps
   }
 }
 
@@ -92,7 +110,7 @@ TEST_CASE("what comes into the eye is refused with the time, what stays before i
   scene.duration_s = 14.9;
   CHECK(sim::validate_travel(scene, 30.0).has_value());
   scene.duration_s = 15.1;
-  test::check_error(sim::validate_travel(scene, 30.0), ErrorCode::out_of_range, "sheet", {"-0.2", "15.1", "0"});
+  test::check_error(sim::validate_travel(scene, 30.0), ErrorCode::out_of_range, "sheet", {"-0.2", "15.000000", "0"});
   scene.duration_s = 0.0;  // for ever: an hour is looked at
   CHECK_FALSE(sim::validate_travel(scene, 30.0).has_value());
 
@@ -117,7 +135,7 @@ TEST_CASE("a motion that leaves numbers is refused with the time") {
   s.motion.velocity_mm_per_s = {300.0, 0.0, 0.0};
   sim::Scene scene = scene_of(s);
   test::check_error(sim::validate_travel(scene, 30.0), ErrorCode::out_of_range, "sheet",
-                    {"1000000", "3600", "duration_s"});
+                    {"1000000", "3333.333333", "duration_s"});
   scene.duration_s = 10.0;
   CHECK(sim::validate_travel(scene, 30.0).has_value());
 }

@@ -40,18 +40,6 @@ namespace {
 using hal::ErrorCode;
 using hal::Result;
 
-/// As long as a sink may draw on the terminal.
-class ScreenLease {
- public:
-  explicit ScreenLease(Session& session) : session_(session) {}
-  ScreenLease(const ScreenLease&) = delete;
-  ScreenLease& operator=(const ScreenLease&) = delete;
-  ~ScreenLease() { session_.guard_screen({}); }
-
- private:
-  Session& session_;
-};
-
 /// From the board to the report, step by step; each step is a member, and what the next ones need stays here.
 class BoardRun {
  public:
@@ -348,7 +336,14 @@ Result<void> BoardRun::measure_quality() {
 
 Result<void> BoardRun::compare() {
   if (!knows_scene() || keeper_->delivered() == 0) return {};
-  auto conventional = conventional_picture(board_, scene_, options_.seed);
+  // Ctrl-C is how many a run ends, and its figures are wanted then too, but not for long.
+  constexpr std::int64_t patience_ns = 2'000'000'000;
+  const std::int64_t begin_ns = session_.clock().now_ns();
+  const recon::Progress progress = session_.progress();
+  auto conventional = conventional_picture(board_, scene_, options_.seed, [&](std::string_view, double share) {
+    return progress("conventional eye", share, 1.0) || session_.clock().now_ns() - begin_ns < patience_ns;
+  });
+  session_.end_progress();
   if (!conventional) {
     note("the conventional eye is left out: " + conventional.error().text());
   } else {

@@ -35,6 +35,18 @@ struct RunSinks {
 [[nodiscard]] RunSinks make_sinks(const RunOptions& options, Session& session, const LiveStatus& status,
                                   std::vector<std::string>& files);
 
+/// As long as a sink may draw on the terminal.
+class ScreenLease {
+ public:
+  explicit ScreenLease(Session& session) : session_(session) {}
+  ScreenLease(const ScreenLease&) = delete;
+  ScreenLease& operator=(const ScreenLease&) = delete;
+  ~ScreenLease() { session_.guard_screen({}); }
+
+ private:
+  Session& session_;
+};
+
 /// The contact sheet of a run: scene | conventional eye | reconstruction (the last delivered frame) | its error, with
 /// their figures. An empty `conventional` picture is left out.
 [[nodiscard]] hal::Result<void> write_run_sheet(const std::string& path, const Figures& run, const hal::Image& truth,

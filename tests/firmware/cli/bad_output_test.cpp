@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "firmware/files/png.hpp"
 #include "tests/firmware/cli/program.hpp"
 #include "tests/firmware/cli/scratch_problem.hpp"
 
@@ -39,7 +40,8 @@ TEST_CASE("an output over what is read, or over another output by any name, is r
   const ScratchProblem problem;
   const std::filesystem::path& folder = problem.folder().path();
   std::filesystem::copy(board_folder("sim-8x8"), folder / "board", std::filesystem::copy_options::recursive);
-  std::ofstream(folder / "s.toml") << "[[surface]]\npicture = \"star\"\n";
+  std::ofstream(folder / "s.toml") << "[[surface]]\npicture = \"p.png\"\n[[surface]]\npicture = \"star\"\n";
+  REQUIRE(compueye::firmware::write_png(folder / "p.png", compueye::hal::Image(2, 2, 0.5F)).has_value());
   std::filesystem::create_symlink("q.npy", folder / "link.npy");
   const std::string simulate = "simulate --board board --scene s.toml ";
   check_refused(problem, simulate + "--out s.toml", ErrorCode::usage, "--out", {"s.toml", "--scene"});
@@ -47,6 +49,8 @@ TEST_CASE("an output over what is read, or over another output by any name, is r
   check_refused(problem, simulate + "--out ./board/../s.toml", ErrorCode::usage, "--out", {"--scene"});
   check_refused(problem, "compare --board board --scene s.toml --sheet s.toml", ErrorCode::usage, "--sheet",
                 {"--scene"});
+  check_refused(problem, "run --board board --scene s.toml --sheet p.png", ErrorCode::usage, "--sheet",
+                {"p.png", "--scene"});
   for (const std::string& same :
        {std::string("./q.npy"), (folder / "q.npy").string(), std::string("link.npy"), std::string("board/../q.npy")}) {
     check_refused(problem, simulate + "--out q.npy --truth " + same, ErrorCode::usage, "--truth", {"--out"});
