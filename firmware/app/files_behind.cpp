@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <string_view>
 #include <system_error>
 #include <variant>
@@ -21,28 +22,28 @@ bool is_file(const fs::path& path) noexcept {
   return fs::is_regular_file(path, ignored);
 }
 
-void add(const fs::path& named, std::vector<fs::path>& files) {
+void add(const fs::path& named, std::vector<std::string>& files) {
   std::error_code error;
-  const fs::path file = fs::canonical(named, error);
+  const std::string file = fs::canonical(named, error).string();
   // Two files may name each other.
   if (error || std::find(files.begin(), files.end(), file) != files.end()) return;
   files.push_back(file);
   constexpr std::uint64_t largest_file = 1U << 20U;
-  if (extension_of(file.string()) != ".toml") return;
+  if (extension_of(file) != ".toml") return;
   const auto text = read_whole_file(file, largest_file);
   const auto document = text ? parse_toml(*text, file) : hal::Result<TomlDocument>();
   if (!document) return;  // whoever reads it says why
   for (const TomlEntry& entry : document->entries) {
     const auto* name = std::get_if<std::string>(&entry.value);
     if (name == nullptr || name->empty()) continue;
-    if (const fs::path other = file.parent_path() / *name; is_file(other)) add(other, files);
+    if (const fs::path other = fs::path(file).parent_path() / *name; is_file(other)) add(other, files);
   }
 }
 
 }  // namespace
 
-std::vector<fs::path> files_behind(const std::string& given) {
-  std::vector<fs::path> files;
+std::vector<std::string> files_behind(const std::string& given) {
+  std::vector<std::string> files;
   for (const fs::path& meant :
        {fs::path(given), fs::path(given_or_shared(given, "boards")), fs::path(given_or_shared(given, "scenes")),
         fs::path(given_or_shared(given + ".toml", "scenes"))}) {

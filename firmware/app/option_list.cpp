@@ -95,7 +95,7 @@ std::string reader_of(const std::string& output, const std::deque<Option>& rows)
     const auto* text = target != nullptr ? std::get_if<std::string*>(target) : nullptr;
     if (text == nullptr || row.writes != Writes::nothing || (*text)->empty()) continue;
     std::error_code ignored;
-    for (const fs::path& read : files_behind(**text)) {
+    for (const std::string& read : files_behind(**text)) {
       if (fs::equivalent(read, output, ignored)) return row.name;
     }
   }

@@ -137,7 +137,7 @@ TEST_CASE("what is or comes inside the eye, or leaves numbers, is told with the 
        14,
        {"card", "0"},
        ErrorCode::out_of_range},
-      {"[1, -2, 0.5]", "[0, 0, -6]", 16, {"card", "5"}, ErrorCode::out_of_range},
+      {"[1, -2, 0.5]", "[0, 0, -6]", 16, {"card", "3.916667", "-6.5"}, ErrorCode::out_of_range},
       {"[1, -2, 0.5]", "[0, 3e5, 0]", 16, {"card", "1000000", "duration_s"}, ErrorCode::out_of_range},
       {"[1, 0, 0, 5]", "[1, 0, 0, -31]", 22, {"2", "-1"}, ErrorCode::out_of_range},
   });
